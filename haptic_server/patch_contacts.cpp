@@ -357,10 +357,14 @@ void PatchContacts::write_free(int first, std::span<const Tool> tools) noexcept 
     const Tool& tool = tools[x.tool];
     const Vec6 tool_back = -(*tool.give * tool.push);
     const Vec3 back = at(x, back_), slip = at(x, free_);
+    const bool soft = std::any_of(x.slot.begin(), x.slot.end(), [](int slot) { return slot >= 0; });
     for (int k = 0; k < 3; ++k) {
       const Vec6 j = x.jacobian(k);
       const Vec3 d = x.directions.row(k).transpose();
-      const double start = k == 0 ? x.gap : j.dot(tool.went) - d.dot(slip);
+      const double approach = j.dot(tool.went) - d.dot(slip);
+      // Tissue is hard to move within a tick. So an overlap with it that was there before is undone within a step, as
+      // the engine does.
+      const double start = k > 0 ? approach : x.gap + (soft ? later_ * std::max(0.0, approach - x.gap) : 0);
       tick_.delta_free[std::size_t(first) + 3 * c + std::size_t(k)] = start + j.dot(tool_back) - d.dot(back);
     }
   }
@@ -387,6 +391,7 @@ const ConstraintProblem& PatchContacts::next(const ConstraintProblem& rows, std:
       for (int a = 0; a < 3; ++a) ahead_[v][a] += free_[std::size_t(slots_[v] + a)];
   }
   find_contacts(tools, max_rows_ - rows.rows);
+  later_ = problem_->step_s > 0 ? std::max(0.0, 1 - dt / problem_->step_s) : 0;
   exchanged_ = std::any_of(remembered_.begin(), remembered_.end(), [&](const Remembered& r) {
     return r.lambda[0] > 0 &&
            std::none_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) { return c.key == r.key; });

@@ -126,6 +126,7 @@ class PatchContacts {
   std::size_t next_collider_ = 0;
   std::uint64_t next_key_ = 1;
   bool exchanged_ = false;
+  double later_ = 0;  ///< share of an overlap that stays until later ticks
   std::vector<Proximity> found_;
   std::vector<Contact> contacts_;
   std::vector<Remembered> remembered_;

@@ -303,7 +303,7 @@ ConstraintProblem heavy_triangle(const Vec3& centre, double h, bool as_rows, dou
 
 TEST(ReducedDynamics, AContactOnAPatchHasTheInertiaOfItsRows) {
   const double h = 1.0 / 60;
-  const Vec3 centre(0, 0, testing::patched_radius_m - 0.2e-3);
+  const Vec3 centre(0, 0, testing::patched_radius_m);
   for (const double load : {0.0, 0.01}) {
     const ConstraintProblem rows = heavy_triangle(centre, h, true, load),
                             patch = heavy_triangle(centre, h, false, load);
@@ -312,10 +312,10 @@ TEST(ReducedDynamics, AContactOnAPatchHasTheInertiaOfItsRows) {
     by_patch.set_problem(&patch, {}, 3e-3);
     massless.set_problem(&patch, {}, 3e-3);
     double difference = 0;
-    for (int k = 0; k < 40; ++k) {
+    for (int k = 1; k < 40; ++k) {
       ServoInput in;
       in.connected[1] = true;
-      in.device[1].p = centre - Vec3(0, 0, 2e-5 * k);
+      in.device[1].p = centre - Vec3(0, 0, 5e-5 * k);
       const Vec3 a = by_rows.tick(in).hand[1].force, b = by_patch.tick(in).hand[1].force;
       EXPECT_NEAR((a - b).norm(), 0, 1e-9) << "tick " << k << ", " << a.transpose() << " and " << b.transpose();
       EXPECT_GT(a.z(), 0.01);

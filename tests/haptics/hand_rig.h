@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/haptics/surface_patch_builder.h"
 #include "core/testing/example.h"
 #include "haptic_server/devices/make_device.h"
 #include "haptic_server/devices/simulated.h"
@@ -30,6 +31,7 @@ struct Press {
   double depth_m = 2e-3;  ///< the goal lies so deep in the plate
   double slide_m_s = 0;   ///< and goes along it
   double seconds = 5;
+  bool soft = false;  ///< a block of brain tissue in place of the plate, with patches and a reduced model
   bool held = false;  ///< the force of a tick in which a problem came stays until the next one
   bool late = true;   ///< a problem reaches the servo a step after the poses it was made with, as from an engine that
                       ///< only just keeps up
@@ -44,14 +46,20 @@ struct Pressed {
   double observed = 0;                     ///< the observer's own largest
   double force = 0;                        ///< mean at the end, N
   double at = 0;                           ///< mean height at the end, m
+  int modelled = 0;                        ///< problems with a reduced model
 };
 
-inline std::string plate_scene(const Press& press) {
-  return "<scene title=\"plate\" time_step=\"" + std::to_string(1000 / press.engine_Hz) + R"( ms">
-    <obstacle id="plate"><surface id="top" mesh="../../meshes/examples/plate.obj" mesh_unit="mm"/></obstacle>
-    <dissector id="tool" hand="right" sharp="never" model="../../meshes/instruments/dissector/dissector.urdf" home="0 0 -19 mm" shaft="0 0 1" flat="1 0 0" coupling=")" +
-         std::to_string(press.coupling_N_m) + R"( N/m"/>
-    <contact between="plate tool" friction="0.1" spacing="1 mm" max_contacts="10"/></scene>)";
+inline std::string scene_of(const Press& press) {
+  const std::string plate = R"(<obstacle id="target"><surface id="top" mesh="../../meshes/examples/plate.obj"
+    mesh_unit="mm"/></obstacle>)";
+  const std::string block = R"(<soft_body id="target" mesh="../../meshes/examples/block.msh" mesh_unit="mm">
+    <corotational_fem young="2.1 kPa" poisson="0.45" rayleigh_stiffness="20 ms"/>
+    <fixed region="beyond" centre="0 0 -19 mm" normal="0 0 -1"/><surface id="top"/></soft_body>)";
+  return "<scene title=\"press\" time_step=\"" + std::to_string(1000 / press.engine_Hz) + " ms\">" +
+         (press.soft ? block : plate) + R"(<dissector id="tool" hand="right" sharp="never"
+    model="../../meshes/instruments/dissector/dissector.urdf" shaft="0 0 1" flat="1 0 0" home=")" +
+         (press.soft ? "0 0 1.2 mm" : "0 0 -19 mm") + R"(" coupling=")" + std::to_string(press.coupling_N_m) +
+         R"( N/m"/><contact between="target tool" friction="0.1" spacing="1 mm" max_contacts="10"/></scene>)";
 }
 
 inline ArmParameters arm_of(const Person& person) {
@@ -69,7 +77,7 @@ constexpr double press_begin = 0.5, press_arrival = 0.3;  ///< s
 /// The pose that the person wants at time t. After the gate has faded forces in, the hand arrives within a third of a
 /// second, at the speed of a tap.
 inline HandGoal goal_at(double t, const Press& press, const Pose& home) {
-  constexpr double top = -20.2e-3;
+  const double top = press.soft ? 0 : -20.2e-3;
   HandGoal goal;
   goal.pose = home;
   const double part = std::clamp((t - press_begin) / press_arrival, 0.0, 1.0);
@@ -95,12 +103,15 @@ class PressEngine {
     s_.set_hand(1, {true, device, false, false});
     s_.step();
     const std::size_t made = (newest_ + 1) % problem_.size(), older = newest_;
-    problem_[made] = s_.problem();
+    problem_[made] = press_.soft ? build_(s_, 200) : s_.problem();
+    if (press_.soft) build_.compute_modes();
+    modelled_ += !problem_[made].reduced.empty();
     newest_ = made;
     if (!press_.late) servo.set_problem(&problem_[made]);
     else if (s_.steps() > 1) servo.set_problem(&problem_[older], {}, h);
     return true;
   }
+  int modelled() const { return modelled_; }
 
  private:
   Simulation& s_;
@@ -108,6 +119,8 @@ class PressEngine {
   double next_step_;
   std::array<ConstraintProblem, 3> problem_;
   std::size_t newest_ = 0;
+  SurfacePatchBuilder build_;
+  int modelled_ = 0;
 };
 
 /// Records speeds, heights and force in the first and in the last second of contact.
@@ -138,7 +151,7 @@ class PressRecord {
 
 inline Pressed press(const Press& press, const Person& person) {
   Pressed out;
-  const auto s = load_text(plate_scene(press), std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/contact/plate.xml");
+  const auto s = load_text(scene_of(press), std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/contact/plate.xml");
   if (!s) return out;
   s->set_collision_horizon(2 * s->h());
   const ArmParameters arm = arm_of(person);
@@ -176,6 +189,7 @@ inline Pressed press(const Press& press, const Person& person) {
     record.add(k, t, moved.z() / dt, device.arm().pose().p.z(), gate.force().z());
   }
   out.observed = observer.most();
+  out.modelled = engine.modelled();
   record.write(out);
   return out;
 }

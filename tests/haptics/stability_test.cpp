@@ -73,6 +73,28 @@ TEST(Stability, ArmsAndHandsAtEveryRateOfTheEngine) {
           }
 }
 
+/// Tissue with inertia of its own between steps gives no hand energy, however light, stiff or weakly damped it is.
+TEST(Stability, ArmsAndHandsOnTissueWithAReducedModel) {
+  for (const double rate : {30.0, 60.0, 240.0})
+    for (const double coupling : {250.0, stiffest_N_m})
+      for (const Person& person :
+           {Person{0.05, 1, 50}, Person{0.05, 1, 2000}, Person{0.3, 7, 300}, Person{2, 50, 2000}}) {
+        Press p;
+        p.soft = true;
+        p.engine_Hz = rate;
+        p.coupling_N_m = coupling;
+        p.depth_m = 5e-3;
+        SCOPED_TRACE(testing::Message() << rate << " Hz, coupling " << coupling << " N/m, " << person.mass_kg << " kg, "
+                                        << person.damping_Ns_m << " N s/m, " << person.stiffness_N_m << " N/m");
+        const Pressed r = press(p, person);
+        EXPECT_GT(r.modelled, 100) << "problems with a model";
+        EXPECT_GT(r.force, 0.01) << "it touches";
+        EXPECT_TRUE(at_rest(r, p, person))
+            << "speed " << r.first_speed << " then " << r.last_speed << " m/s, swing " << r.swing;
+        EXPECT_LT(r.last_energy, enough_J) << "more was given back than put in, J; at most " << r.max_energy;
+      }
+}
+
 TEST(Stability, AHandThatDrawsAToolAlongAWall) {
   for (const double rate : {25.0, 120.0})
     for (const Person& person : {Person{0.05, 1, 400}, Person{0.125, 10, 400}, Person{2, 20, 400}}) {
