@@ -196,43 +196,13 @@ void PatchContacts::scale(double dt, double h, bool substep_compliance) noexcept
     share_[i] = substep_compliance && h > 0 ? tick_share(dt, h, beta_[i]) : 1.0;
 }
 
-void PatchContacts::begin_dynamics(ReducedDynamics* dynamics) noexcept {
-  dynamics_ = dynamics;
-  if (!dynamics_) return;
-  const std::size_t n = source_.size(), modes = dynamics_->modes();
-  const auto dot = [&](const double* a, const double* b) {
-    double sum = 0;
-    for (std::size_t s = 0; s < modes; ++s) sum += a[s] * b[s];
-    return sum;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    const double* p = participation(i);
-    for (std::size_t j = 0; j < n; ++j) w_vv_[i * n + j] -= dot(p, participation(j));
-    for (std::size_t r = 0; r < std::size_t(rows_->rows); ++r)
-      w_vr_[i * std::size_t(max_rows_) + r] -= dot(p, rows_->reduced.row(r));
-    rate_[i] -= dynamics_->rate(p);
-  }
-}
-
-void PatchContacts::add_forces() noexcept {
-  for (std::size_t i = 0; i < force_.size(); ++i)
-    if (force_[i] != 0) dynamics_->add_force(participation(i), force_[i]);
-}
-
 void PatchContacts::subtract_known(std::span<const double> share, std::span<double> delta_free) const noexcept {
   for (std::size_t i = 0; i < force_.size(); ++i) {
     const double f = share_[i] * force_[i];
     if (f == 0) continue;
     for (std::size_t r = 0; r < delta_free.size(); ++r) delta_free[r] -= share[r] * vr(i, r) * f;
   }
-  if (!dynamics_) return;
-  std::array<double, ReducedModel::max_modes> by_vertices{};
-  for (std::size_t i = 0; i < force_.size(); ++i)
-    for (std::size_t s = 0; s < dynamics_->modes() && force_[i] != 0; ++s)
-      by_vertices[s] += participation(i)[s] * force_[i];
-  for (std::size_t r = 0; r < delta_free.size(); ++r)
-    for (std::size_t s = 0; s < dynamics_->modes(); ++s)
-      delta_free[r] -= rows_->reduced.row(r)[s] * dynamics_->compliance()[s] * by_vertices[s];
+  if (dynamics_) subtract_known_modes(delta_free);
 }
 
 Vec3 PatchContacts::at(const Contact& c, const std::vector<double>& values) const noexcept {
@@ -264,41 +234,6 @@ void PatchContacts::find_contacts(std::span<const Tool> tools, int room) noexcep
     collider_of(patch.id).detect(tool.pose, ahead_, found_, next_key_);
     for (const Proximity& x : found_)
       if (contacts_.size() < most_contacts && 3 * (int(contacts_.size()) + 1) <= room) add_contact(patch, x, tool);
-  }
-}
-
-void PatchContacts::find_participations() noexcept {
-  const std::size_t modes = dynamics_->modes();
-  contact_participation_.assign(3 * contacts_.size() * modes, 0.0);  // within its capacity
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const Contact& x = contacts_[c];
-    for (std::size_t i = 0; i < 3; ++i)
-      for (int a = 0; a < 3 && x.slot[i] >= 0; ++a) {
-        const double* p = participation(std::size_t(x.slot[i] + a));
-        for (int k = 0; k < 3; ++k) {
-          const double weight = -x.directions(k, a) * x.bary[long(i)];
-          double* out = contact_participation_.data() + (3 * c + std::size_t(k)) * modes;
-          for (std::size_t s = 0; s < modes; ++s) out[s] += weight * p[s];
-        }
-      }
-  }
-}
-
-// The modes' part in W of the contacts' rows.
-void PatchContacts::add_modal_compliance(std::size_t rows) noexcept {
-  find_participations();
-  const std::size_t modes = dynamics_->modes(), stride = std::size_t(tick_.stride);
-  std::array<double, ReducedModel::max_modes> scaled;
-  for (std::size_t c = 0; c < 3 * contacts_.size(); ++c) {
-    const double* own = contact_participation_.data() + c * modes;
-    for (std::size_t s = 0; s < modes; ++s) scaled[s] = own[s] * dynamics_->compliance()[s];
-    for (std::size_t r = 0; r < rows + c + 1; ++r) {
-      const double* p = r < rows ? rows_->reduced.row(r) : contact_participation_.data() + (r - rows) * modes;
-      double sum = 0;
-      for (std::size_t s = 0; s < modes; ++s) sum += scaled[s] * p[s];
-      tick_.w[(rows + c) * stride + r] += sum;
-      if (r != rows + c) tick_.w[r * stride + rows + c] += sum;
-    }
   }
 }
 

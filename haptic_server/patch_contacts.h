@@ -101,6 +101,7 @@ class PatchContacts {
 
   /// Of one of the vertices' values.
   const double* participation(std::size_t i) const noexcept { return problem_->reduced.row(std::size_t(source_[i])); }
+  void subtract_known_modes(std::span<double> delta_free) const noexcept;
   void find_participations() noexcept;
   void add_modal_compliance(std::size_t rows) noexcept;
 

@@ -89,6 +89,7 @@ TEST(HapticPatch, WhatIsNoPatchIsRefused) {
          std::swap(u.problem.blocks[0], u.problem.blocks[3]);
        },
        none},
+      {"of a row of a surface", [](HapticUpdate& u) { u.problem.blocks[contact].role = BlockRole::surface; }, none},
       {"law 3", [](HapticUpdate& u) { u.problem.blocks[patch].law = LawKind(3); }, "unknown law"},
       {"law -1", [](HapticUpdate& u) { u.problem.blocks[contact].law = LawKind(255); }, "unknown law"},
       {"negative friction", [](HapticUpdate& u) { u.problem.blocks[patch].friction = -0.1; }, "friction out of range"},

@@ -62,7 +62,7 @@ bool patch_ok(const ProblemLayout& l, const Block& b, int index) {
   if (b.law != LawKind::patch) return b.normals == 0;
   if (b.normals < 1 || b.normals > index) return false;
   for (int k = index - b.normals; k < index; ++k)
-    if (l.block_at(k).law != LawKind::box) return false;
+    if (const Block of = l.block_at(k); of.law != LawKind::box || of.role == BlockRole::surface) return false;
   return true;
 }
 
