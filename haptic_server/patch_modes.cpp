@@ -5,18 +5,33 @@
 #include "haptic_server/patch_contacts.h"
 
 namespace insula {
+namespace {
+
+/// The modes that a row has a part in: from the first to the one before the last. Most rows touch one body.
+struct Range {
+  std::size_t first, last;
+};
+Range range_of(const double* participation, std::size_t modes) {
+  Range r{0, modes};
+  while (r.last > 0 && participation[r.last - 1] == 0) --r.last;
+  while (r.first < r.last && participation[r.first] == 0) ++r.first;
+  return r;
+}
+
+}  // namespace
 
 void PatchContacts::begin_dynamics(ReducedDynamics* dynamics) noexcept {
   dynamics_ = dynamics;
   if (!dynamics_) return;
   const std::size_t n = source_.size(), modes = dynamics_->modes();
-  const auto dot = [&](const double* a, const double* b) {
-    double sum = 0;
-    for (std::size_t s = 0; s < modes; ++s) sum += a[s] * b[s];
-    return sum;
-  };
   for (std::size_t i = 0; i < n; ++i) {
     const double* p = participation(i);
+    const Range own = range_of(p, modes);  // those of one body
+    const auto dot = [&](const double* a, const double* b) {
+      double sum = 0;
+      for (std::size_t s = own.first; s < own.last; ++s) sum += a[s] * b[s];
+      return sum;
+    };
     for (std::size_t j = 0; j < n; ++j) w_vv_[i * n + j] -= dot(p, participation(j));
     for (std::size_t r = 0; r < std::size_t(rows_->rows); ++r)
       w_vr_[i * std::size_t(max_rows_) + r] -= dot(p, rows_->reduced.row(r));
@@ -64,11 +79,12 @@ void PatchContacts::add_modal_compliance(std::size_t rows) noexcept {
   std::array<double, ReducedModel::max_modes> scaled;
   for (std::size_t c = 0; c < 3 * contacts_.size(); ++c) {
     const double* own = contact_participation_.data() + c * modes;
-    for (std::size_t s = 0; s < modes; ++s) scaled[s] = own[s] * dynamics_->compliance()[s];
+    const Range body = range_of(own, modes);
+    for (std::size_t s = body.first; s < body.last; ++s) scaled[s] = own[s] * dynamics_->compliance()[s];
     for (std::size_t r = 0; r < rows + c + 1; ++r) {
       const double* p = r < rows ? rows_->reduced.row(r) : contact_participation_.data() + (r - rows) * modes;
       double sum = 0;
-      for (std::size_t s = 0; s < modes; ++s) sum += scaled[s] * p[s];
+      for (std::size_t s = body.first; s < body.last; ++s) sum += scaled[s] * p[s];
       tick_.w[(rows + c) * stride + r] += sum;
       if (r != rows + c) tick_.w[r * stride + rows + c] += sum;
     }
