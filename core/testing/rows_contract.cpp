@@ -325,7 +325,8 @@ void check_memory(Findings& findings, const std::filesystem::path& scene, const 
   }
   s->reset();
   start();
-  findings.expect(same_laws(first, bench.rows(), what), "after reset() its rows are not those of the start", what);
+  const bool same = same_laws(first, bench.rows(), what);  // before `what` is passed as a view
+  findings.expect(same, "after reset() its rows are not those of the start", what);
 }
 
 /// At rest the ids stay. A constraint that declares no rows adds none.
