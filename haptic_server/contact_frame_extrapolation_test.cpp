@@ -32,9 +32,7 @@ ConstraintProblem on_ball(double angle, double deep = 0, double steps_ahead = 0)
   const Vec3 n = normal_at(angle + steps_ahead * step_rad), along = axis.cross(n),
              directions[3] = {n, along, n.cross(along)};
   for (int k = 0; k < 3; ++k) t.jacobian.row(k) << directions[k].transpose(), reach.cross(directions[k]).transpose();
-  const MatX w = t.jacobian * t.compliance * t.jacobian.transpose();
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) p.w[std::size_t(i * p.stride + j)] = w(i, j);
+  testing::set_w(p, MatX(t.jacobian * t.compliance * t.jacobian.transpose()));
   p.delta_free[0] = -deep;
   p.prediction_horizon_steps = steps_ahead;
   p.blocks.push_back({.id = 7, .law = LawKind::friction});

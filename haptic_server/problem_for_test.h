@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/constraint/problem.h"
+#include "core/constraint/problem_for_test.h"
 #include "core/constraint/solve.h"
 
 namespace insula::testing {
@@ -157,8 +157,7 @@ inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64
   set_contact_jacobians(p, rows, random);
   set_patch_jacobians(p, rows, random);
   for (const ToolTerms& t : p.tools) w += t.jacobian * t.compliance * t.jacobian.transpose();
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) p.w[std::size_t(i) * p.stride + j] = w(i, j);
+  set_w(p, w);
   for (int i = 0; i < n; ++i) p.delta_free[std::size_t(i)] = 1e-3 * random.next();
   add_two_tool_blocks(p, rows);
   return p;

@@ -21,7 +21,6 @@ class ReducedDynamics {
   void begin(const ReducedModel* model, double step_s) noexcept;
   bool any() const noexcept { return !z_.empty(); }
   std::size_t modes() const noexcept { return z_.size(); }
-  const std::vector<ReducedModel::Group>& groups() const noexcept { return model_->groups; }
 
   /// Sets the length of the ticks that follow.
   void set_tick(double dt_s) noexcept;
@@ -36,7 +35,6 @@ class ReducedDynamics {
   void forces_are_of_the_problem() noexcept { phi_problem_ = phi_; }
   /// dz of the tick with the present phi.
   void predict() noexcept;
-  std::span<const double> predicted() const noexcept { return dz_; }
   /// Ends the tick with the present phi.
   void advance() noexcept;
   /// m z'^2/2 + k z^2/2 of all modes, J.

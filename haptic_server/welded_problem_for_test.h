@@ -45,8 +45,7 @@ inline ConstraintProblem with_clip(int contacts, int own, std::uint64_t seed) {
   MatX w = 4e-3 * MatX::Identity(n, n);
   for (int k = 0; k < 6; ++k) w(own + k, own + k) = 0;
   w += t.jacobian * t.compliance * t.jacobian.transpose() + clip * give * clip.transpose();
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) p.w[std::size_t(i) * std::size_t(p.stride) + std::size_t(j)] = w(i, j);
+  set_w(p, w);
   p.tools.push_back(t);
   return p;
 }

@@ -76,17 +76,17 @@ struct ReducedModel {
   /// Modes of an older factor may do so. Rows that hardly move with them are taken out.
   template <class Compliance>
   void limit(std::size_t first, std::size_t rows, Compliance&& w) {
+    const auto own = [&](std::size_t i) {
+      double sum = 0;
+      for (std::size_t s = first; s < modes.size(); ++s) sum += row(i)[s] * row(i)[s];
+      return sum;
+    };
     double most = 1;
-    for (std::size_t i = 0; i < rows; ++i) {
-      double own = 0;
-      for (std::size_t s = first; s < modes.size(); ++s) own += row(i)[s] * row(i)[s];
-      if (const double whole = w(i); own > most * whole) most = own / whole;  // infinite for a row that cannot move
-    }
+    for (std::size_t i = 0; i < rows; ++i)
+      if (own(i) > most * w(i)) most = own(i) / w(i);  // infinite for a row that cannot move
     const double scale = std::sqrt(1 / most);
     for (std::size_t i = 0; i < rows; ++i) {
-      double own = 0;
-      for (std::size_t s = first; s < modes.size(); ++s) own += row(i)[s] * row(i)[s];
-      const double by = own > negligible * w(i) ? scale : 0;
+      const double by = own(i) > negligible * w(i) ? scale : 0;
       for (std::size_t s = first; s < modes.size(); ++s) row(i)[s] *= by;
     }
   }

@@ -7,7 +7,7 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "core/constraint/problem.h"
+#include "core/constraint/problem_for_test.h"
 #include "core/constraint/solve.h"
 #include "core/haptics/condense.h"
 
@@ -36,9 +36,8 @@ struct SpringBody {
     ConstraintProblem p;
     p.resize(rows);
     p.step_s = h;
-    const MatX w = jacobian * system(h).ldlt().solve(jacobian.transpose());
+    testing::set_w(p, MatX(jacobian * system(h).ldlt().solve(jacobian.transpose())));
     for (int i = 0; i < rows; ++i) {
-      for (int j = 0; j < rows; ++j) p.w[std::size_t(i * p.stride + j)] = w(i, j);
       Block b;
       b.id = std::uint64_t(10 + i);
       b.row = i;
@@ -120,9 +119,7 @@ TEST(CondenseModes, AFewModesLeaveAPositiveRest) {
   ConstraintProblem small;
   Condenser()(few, SpringBody::at_tool, small);
   ASSERT_EQ(small.reduced.size(), 4);
-  MatX w(small.rows, small.rows);
-  for (int i = 0; i < small.rows; ++i)
-    for (int j = 0; j < small.rows; ++j) w(i, j) = small.w_at(i, j);
+  const MatX w = testing::w_of(small);
   const MatX g = participation(small.reduced, small.rows);
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatX>(w - g * g.transpose()).eigenvalues().minCoeff(), -1e-12 * w.norm());
   for (const ReducedModel::Mode& m : small.reduced.modes) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <random>
 
+#include "core/constraint/problem_for_test.h"
 #include "core/constraint/solve.h"
 
 namespace insula {
@@ -20,8 +21,8 @@ ConstraintProblem make(int n, int tool_coupled) {
   p.resize(n);
   const MatX a = MatX::NullaryExpr(n, n, [&] { return u(random); });
   const MatX w = a * a.transpose() / n + 0.5 * MatX::Identity(n, n);
+  testing::set_w(p, w);
   for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) p.w[std::size_t(i) * std::size_t(p.stride) + std::size_t(j)] = w(i, j);
     p.delta_free[std::size_t(i)] = 1e-3 * u(random);
     Block b;
     b.id = std::uint64_t(100 + i);

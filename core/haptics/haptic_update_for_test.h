@@ -7,6 +7,7 @@
 #include <insula_lcm/haptic_problem_t.hpp>
 #include <random>
 
+#include "core/bus/mutate_for_test.h"
 #include "core/constraint/problem_fields.h"
 #include "core/haptics/haptic_update.h"
 
@@ -162,6 +163,29 @@ inline void expect_equal(const HapticUpdate& a, const HapticUpdate& b) {
     EXPECT_EQ(x.jacobian, y.jacobian);
     EXPECT_EQ(a.offset[i].p, b.offset[i].p);
     EXPECT_EQ(a.offset[i].q.coeffs(), b.offset[i].q.coeffs());
+  }
+}
+
+/// Truncates and damages a message, with the right checksum. What is cut short is refused. After each random damage,
+/// check(accepted, damaged, before, now, into) sees the update with its bytes before and after.
+template <class Check>
+void damage_message(const Buffer& whole, std::uint32_t seed, int times, Check&& check) {
+  HapticUpdate into = make_update(2, 2, 1, 2);
+  std::string why;
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    Buffer cut(whole.begin(), whole.begin() + std::ptrdiff_t(n));
+    seal_problem(cut);
+    ASSERT_FALSE(decode_problem(cut, into, why)) << n;
+  }
+  Buffer before = encoded(into), now;
+  Mutator mutate(seed);
+  for (int i = 0; i < times; ++i) {
+    Buffer damaged = mutate(whole);
+    seal_problem(damaged);
+    const bool accepted = decode_problem(damaged, into, why);
+    ASSERT_TRUE(encode_problem(into, now));
+    ASSERT_NO_FATAL_FAILURE(check(accepted, damaged, before, now, into));
+    before = now;
   }
 }
 

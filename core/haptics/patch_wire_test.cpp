@@ -2,7 +2,6 @@
 // Surface patches in the haptic problem's wire format.
 #include <functional>
 
-#include "core/bus/mutate_for_test.h"
 #include "core/haptics/haptic_update_for_test.h"
 
 namespace insula {
@@ -153,28 +152,16 @@ TEST(SurfacePatchWire, WhatRefersToNothingOrIsOutOfRangeIsRefused) {
 
 TEST(SurfacePatchWire, EveryTruncationAndRandomDamageIsRefusedOrWhole) {
   const Buffer whole = encoded(patched_update(1));
-  HapticUpdate into = make_update(2, 2, 1, 2);
-  std::string why;
-  for (std::size_t n = 0; n < whole.size(); ++n) {
-    Buffer cut(whole.begin(), whole.begin() + std::ptrdiff_t(n));
-    seal_problem(cut);
-    ASSERT_FALSE(decode_problem(cut, into, why)) << n;
-  }
-  Buffer before = encoded(into), now;
-  testing::Mutator mutate(78);
-  for (int i = 0; i < 50'000; ++i) {
-    Buffer damaged = mutate(whole);
-    seal_problem(damaged);
-    const bool ok = decode_problem(damaged, into, why);
-    ASSERT_TRUE(encode_problem(into, now));
-    ASSERT_EQ(now, ok ? damaged : before);
-    before = now;
-    const SurfacePatches& s = into.problem.patches;
-    for (const PatchVertex& v : s.vertices) ASSERT_TRUE(v.row >= -1 && v.row + 3 <= into.problem.rows);
-    for (const PatchTriangle& t : s.triangles)
-      for (const int v : t.corner) ASSERT_TRUE(v >= 0 && std::size_t(v) < s.vertices.size());
-    for (const SurfacePatch& p : s.patches) ASSERT_LT(p.tool, int(into.problem.tools.size()));
-  }
+  testing::damage_message(
+      whole, 78, 50'000,
+      [](bool accepted, const Buffer& damaged, const Buffer& before, const Buffer& now, const HapticUpdate& into) {
+        ASSERT_EQ(now, accepted ? damaged : before);
+        const SurfacePatches& s = into.problem.patches;
+        for (const PatchVertex& v : s.vertices) ASSERT_TRUE(v.row >= -1 && v.row + 3 <= into.problem.rows);
+        for (const PatchTriangle& t : s.triangles)
+          for (const int v : t.corner) ASSERT_TRUE(v >= 0 && std::size_t(v) < s.vertices.size());
+        for (const SurfacePatch& p : s.patches) ASSERT_LT(p.tool, int(into.problem.tools.size()));
+      });
 }
 
 }  // namespace

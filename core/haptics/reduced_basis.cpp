@@ -121,18 +121,20 @@ void ReducedBasis::find_modes(const DeformableBody& body, double h) {
   mv_ = mass_.asDiagonal() * v_;
   damping_.assign(std::size_t(n), {});
   modes_.assign(std::size_t(n), {});
+  double slowest = 0, fastest = infinite;
+  for (int i = 0; i < body.nodes(); ++i) {
+    if (body.free_of_node()[std::size_t(i)] < 0) continue;
+    slowest = std::max(slowest, body.retardation_time_of_node(i));
+    fastest = std::min(fastest, body.retardation_time_of_node(i));
+  }
   for (int s = 0; s < n; ++s) {
     Damping& d = damping_[std::size_t(s)];
-    double slowest = 0, fastest = 1e9;
     for (int i = 0; i < body.nodes(); ++i) {
       const int f = body.free_of_node()[std::size_t(i)];
       if (f < 0) continue;
       const auto moved = v_.col(s).segment<3>(3 * f);
-      const double time = body.retardation_time_of_node(i);
       d.of_mass_s += body.node_damping()[std::size_t(i)] * moved.squaredNorm();
-      d.retardation_s += time * moved.dot(av_.col(s).segment<3>(3 * f));
-      slowest = std::max(slowest, time);
-      fastest = std::min(fastest, time);
+      d.retardation_s += body.retardation_time_of_node(i) * moved.dot(av_.col(s).segment<3>(3 * f));
     }
     d.retardation_s = std::clamp(d.retardation_s, std::max(0.0, fastest), slowest);
     // 1 = m/h^2 + c/h + k with c = alpha + T k.

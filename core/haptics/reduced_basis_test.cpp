@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "core/constraint/problem_for_test.h"
 #include "tests/physics/soft_body_for_test.h"
 
 namespace insula::test {
@@ -58,16 +59,14 @@ struct Sample {
     body->solver()->compute_parts();
     body->solver()->add_compliance(rows, p.w.data(), p.stride);
     body->solver()->exchange_rows();
-    return Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>, 0, Eigen::OuterStride<>>(
-        p.w.data(), p.rows, p.rows, Eigen::OuterStride<>(p.stride));
+    return testing::w_of(p);
   }
 };
 
 ConstraintProblem problem_with(const MatX& w) {
   ConstraintProblem p;
   p.resize(int(w.rows()));
-  for (int i = 0; i < p.rows; ++i)
-    for (int j = 0; j < p.rows; ++j) p.w[std::size_t(i * p.stride + j)] = w(i, j);
+  testing::set_w(p, w);
   return p;
 }
 

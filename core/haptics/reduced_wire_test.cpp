@@ -2,7 +2,6 @@
 // The reduced dynamic model in the haptic problem's wire format.
 #include <functional>
 
-#include "core/bus/mutate_for_test.h"
 #include "core/haptics/haptic_update_for_test.h"
 
 namespace insula {
@@ -97,32 +96,20 @@ TEST(ReducedModelWire, WhatDoesNotFitIsNotSent) {
 
 TEST(ReducedModelWire, EveryTruncationAndRandomDamageIsRefusedOrWhole) {
   const Buffer whole = encoded(reduced_update(1));
-  HapticUpdate into = make_update(2, 2, 1, 2);
-  std::string why;
-  for (std::size_t n = 0; n < whole.size(); ++n) {
-    Buffer cut(whole.begin(), whole.begin() + std::ptrdiff_t(n));
-    seal_problem(cut);
-    ASSERT_FALSE(decode_problem(cut, into, why)) << n;
-  }
-  Buffer before = encoded(into), now;
-  testing::Mutator mutate(79);
-  for (int i = 0; i < 50'000; ++i) {
-    Buffer damaged = mutate(whole);
-    seal_problem(damaged);
-    const bool ok = decode_problem(damaged, into, why);
-    ASSERT_TRUE(encode_problem(into, now));
-    if (!ok) {
-      ASSERT_EQ(now, before);
-    }
-    before = now;
-    const ReducedModel& m = into.problem.reduced;
-    ASSERT_LE(m.modes.size(), ReducedModel::max_modes);
-    for (const ReducedModel::Mode& x : m.modes) {
-      ASSERT_TRUE(x.mass_s2 >= 0 && x.damping_s >= 0 && std::isfinite(x.velocity) && std::isfinite(x.force));
-      ASSERT_GE(x.stiffness(into.step_s), -1e-3);
-    }
-    for (const double x : m.participation) ASSERT_TRUE(std::isfinite(x));
-  }
+  testing::damage_message(
+      whole, 79, 50'000,
+      [](bool accepted, const Buffer&, const Buffer& before, const Buffer& now, const HapticUpdate& into) {
+        if (!accepted) {
+          ASSERT_EQ(now, before);
+        }
+        const ReducedModel& m = into.problem.reduced;
+        ASSERT_LE(m.modes.size(), ReducedModel::max_modes);
+        for (const ReducedModel::Mode& x : m.modes) {
+          ASSERT_TRUE(x.mass_s2 >= 0 && x.damping_s >= 0 && std::isfinite(x.velocity) && std::isfinite(x.force));
+          ASSERT_GE(x.stiffness(into.step_s), -1e-3);
+        }
+        for (const double x : m.participation) ASSERT_TRUE(std::isfinite(x));
+      });
 }
 
 }  // namespace
