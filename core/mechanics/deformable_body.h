@@ -8,6 +8,7 @@
 
 #include "core/linalg/body_solver.h"
 #include "core/mechanics/dynamic_body.h"
+#include "core/mechanics/follower_load.h"
 #include "core/mechanics/force_model.h"
 
 namespace insula {
@@ -74,6 +75,8 @@ class DeformableBody : public DynamicBody {
   VecX external;
   /// Force of the fluid that fills the body, set by a constraint between the steps, 3 values a node, N.
   VecX filling;
+  /// How `filling` changes with the shape; null: unknown. It must live as long as the body steps.
+  const FollowerLoad* filling_gradient = nullptr;
   /// Prestrains the force models so that they balance `load` (3 values a node, N) in the rest configuration. Returns
   /// the remaining imbalance on the free nodes over |load|, which is 1 when no force model takes a prestrain. Call it
   /// after connect() and before the first step.

@@ -43,6 +43,7 @@ void DeformableBody::assemble(double h) {
   }
   a_.set_zero();
   for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), &a_, h, Tangent::system);
+  if (filling_gradient) filling_gradient->add_gradient(a_, -1);
 }
 
 // Forces that depend on velocity, and D v in damped_load_. D is assembled together with A.
@@ -59,20 +60,23 @@ void DeformableBody::add_damping(double h, bool fresh) {
 
 // Factorises A with inertia, and begins the motion under load_.
 void DeformableBody::factorise(double h) {
-  double extra = 1;
+  double extra = 1, inertia_so_far = 0;
+  bool with_load = filling_gradient != nullptr;
   for (int attempt = 0;; ++attempt) {
     for (int i = 0; i < nodes(); ++i) {
       const int b = free_[std::size_t(i)];
       if (b < 0) continue;
       const double inertia = mass_[std::size_t(i)] / (h * h) + damping_[std::size_t(i)] / h;
       double* d = a_.block(a_.diagonal(b));
-      const double add = attempt == 0 ? inertia : (extra - extra / 10) * inertia;
+      const double add = (extra - inertia_so_far) * inertia;
       d[0] += add;
       d[4] += add;
       d[8] += add;
     }
-    // If the matrix is indefinite, although force models must not cause this, its inertia is multiplied by ten until it
-    // is not.
+    inertia_so_far = extra;
+    // A fluid's load makes the matrix indefinite where its wall buckles. The step then leaves the load's gradient out.
+    // If the matrix is still indefinite, although force models must not cause this, its inertia is multiplied by ten
+    // until it is not.
     const auto begin = std::chrono::steady_clock::now();
     const bool good = solver_->begin_motion(&a_, load_, guess_);
     factor_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
@@ -82,7 +86,9 @@ void DeformableBody::factorise(double h) {
     }
     if (good || attempt == 12) break;
     ++indefinite_;
-    extra *= 10;
+    if (with_load) filling_gradient->add_gradient(a_, 1);
+    else extra *= 10;
+    with_load = false;
   }
   ++factorisations_;
   factor_q_ = q_;

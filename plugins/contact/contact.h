@@ -2,6 +2,7 @@
 // Contact among bodies and tools. contact.cpp describes the law and the scene element.
 #pragma once
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -204,6 +205,7 @@ class Contact final : public Constraint, public StatesLaw {
   struct Touch {
     int piece = -1;  ///< -1: none
     double time = 1;
+    double overlap_at_end = std::numeric_limits<double>::infinity();  ///< of the piece with the surface, m
     std::size_t count = 0;
     std::array<Vec3, ToolCollider::max_touch_normals>
         normal;  ///< of the `count` contacts that the piece then has, towards the tool

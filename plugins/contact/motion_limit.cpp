@@ -9,6 +9,7 @@ namespace insula {
 namespace {
 // Lengths over the limit of the motion inward.
 constexpr double farthest_along = 3;   // of the motion along what is touched
+constexpr double shallow = 2;          // of an overlap at the end of the motion that a wall bears without inverting
 constexpr double fast = 10;            // of a motion that may meet what no contact was found with
 constexpr double servo_step_s = 1e-3;  // clients with such short steps get the same limit in each of them
 
@@ -30,7 +31,8 @@ Vec3 farthest_from_axis(const RoundedPiece& r) {
 // elements of a lobe, and a large slide would leave the region of the detected contacts. So a tool goes into what it
 // touches by at most max_step_displacement (a wall) or tissue_max_step_displacement. A tool in a hand moves along a
 // wall by up to three times as much, since the hand would be held back. Three rows limit the free motion of three
-// points of the touching piece. A motion that no contact opposes is free, so a hand that leaves is never pulled.
+// points of the touching piece. A motion that no contact opposes is free, so a hand that leaves is never pulled. So is
+// one that ends in a shallow overlap with a wall, such as a quick tap or a quick stroke along it.
 void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   if (!p.tool_a || !p.b || !p.active() || p.b->body().blocks() == 0) return;
   const bool wall = p.b->thickness() > 0;
@@ -38,6 +40,7 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   const double along = wall && p.in_hand ? farthest_along : 1;
   const Touch touch = first_touch(p);
   if (touch.piece < 0) return;
+  const bool ends_near = wall && p.in_hand && touch.overlap_at_end <= shallow * deepest;
   const RoundedPiece& r = p.pieces_a[std::size_t(touch.piece)];
   int count = 0;
   for (const Vec3& place : {r.axis0, r.axis1, farthest_from_axis(r)}) {
@@ -48,6 +51,7 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
     for (const Vec3& n : touch.normals()) inward = std::max(inward, -n.dot(u));
     ++count;
     if (inward <= 0) continue;
+    if (ends_near && (1 - touch.time) * inward <= farthest_along * deepest) continue;
     const double ratio = distance < fast * deepest ? std::min(distance / inward, along) : 1;
     const double most = ratio * deepest, allowed = touch.time * distance + most;
     if (distance <= allowed) continue;
@@ -69,6 +73,7 @@ Contact::Touch Contact::first_touch(const Pair& p) const {
   if (p.tool_collider) {
     touch.piece = p.tool_collider->touching_piece();
     touch.time = p.tool_collider->touch_time();
+    touch.overlap_at_end = p.tool_collider->overlap_at_end();
     for (const Vec3& n : p.tool_collider->touch_normals()) touch.add(n);
     return touch;
   }

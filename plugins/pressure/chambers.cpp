@@ -63,8 +63,9 @@ void Chambers::assign(const ShellBody& body, const std::vector<std::vector<std::
 void Chambers::build(const ShellBody& body, const std::vector<std::vector<std::string>>& groups) {
   const TriMesh& mesh = body.rest();
   chambers_.assign(groups.size(), {});
-  std::vector<int> of;
+  std::vector<int>& of = of_triangle_;
   assign(body, groups, of);
+  triangles_ = mesh.triangles;
   origin_ =
       std::accumulate(mesh.vertices.begin(), mesh.vertices.end(), Vec3(Vec3::Zero())) / double(mesh.vertices.size());
   for (std::size_t c = 0; c < groups.size(); ++c) chambers_[c].name = groups[c].front();
@@ -174,6 +175,41 @@ void Chambers::gradient(int index, const VecX& q, std::vector<Vec3>& out) const 
     for (int v : c.border[k]) out[std::size_t(v)] += sum;
   }
   for (Vec3& g : out) g /= 6;
+}
+
+void Chambers::bind(const BlockMatrix& a, const std::vector<int>& free_of_node) {
+  edges_.clear();
+  const auto edges = edges_of(triangles_);
+  for (const auto& [edge, triangle] : edges) {
+    const auto [from, to] = edge;
+    const int row = free_of_node[std::size_t(from)], column = free_of_node[std::size_t(to)];
+    const auto back = edges.find({to, from});
+    if (column < 0 || row < column || back == edges.end()) continue;
+    const int slot = a.find_slot(row, column);
+    if (slot < 0) continue;
+    const auto apex = [&](int t) {
+      const auto& v = triangles_[std::size_t(t)];
+      return v[0] + v[1] + v[2] - from - to;
+    };
+    edges_.push_back({slot, apex(triangle), apex(back->second), of_triangle_[std::size_t(triangle)],
+                      of_triangle_[std::size_t(back->second)]});
+  }
+}
+
+// A triangle (x, y, z) has the volume x . (y cross z) / 6 with the origin, so d2/dx dy = -[z]/6 and d2/dy dx = [z]/6.
+void Chambers::add_second_derivative(const VecX& q, std::span<const double> pressure, double scale,
+                                     BlockMatrix& a) const {
+  for (const CoupledEdge& e : edges_) {
+    const double p = (pressure[std::size_t(e.left_chamber)] + pressure[std::size_t(e.right_chamber)]) / 2;
+    const Vec3 d = scale * p / 6 * (q.segment<3>(3 * e.right) - q.segment<3>(3 * e.left));
+    double* block = a.block(e.slot);  // += [d], column by column
+    block[1] += d.z();
+    block[2] -= d.y();
+    block[3] -= d.z();
+    block[5] += d.x();
+    block[6] += d.y();
+    block[7] -= d.x();
+  }
 }
 
 }  // namespace insula

@@ -6,6 +6,7 @@
 // neither a resultant force nor a moment. The cones of neighbours cancel, and the chambers' volumes add up to that of
 // the shell.
 #pragma once
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +30,11 @@ class Chambers {
   double volume(int c, const VecX& q) const;  ///< m3
   /// d volume / d node, m2, one for each node of nodes(c). `out` is resized.
   void gradient(int c, const VecX& q, std::vector<Vec3>& out) const;
+  /// Finds the blocks of `a`, the body's matrix, that the second derivatives fill.
+  void bind(const BlockMatrix& a, const std::vector<int>& free_of_node);
+  /// a += sum_c scale * pressure[c] * d2(volume c)/dq2, N/m. At an edge between two chambers the mean of their
+  /// pressures acts. The gradient of the load is thus exact for equal pressures, and is always symmetric.
+  void add_second_derivative(const VecX& q, std::span<const double> pressure, double scale, BlockMatrix& a) const;
 
  private:
   struct Chamber {
@@ -46,6 +52,15 @@ class Chambers {
   void add_borders(const std::vector<std::array<int, 3>>& triangles, const std::vector<int>& of,
                    std::size_t node_count);
 
+  /// An edge between two free nodes. Its block of the matrix has the row of one node and the column of the other.
+  struct CoupledEdge {
+    int slot;
+    int left, right;  ///< apex of the triangle that runs from row to column, and of the other one; nodes
+    int left_chamber, right_chamber;  ///< of these triangles
+  };
+  std::vector<CoupledEdge> edges_;
+  std::vector<std::array<int, 3>> triangles_;  ///< of all chambers
+  std::vector<int> of_triangle_;               ///< their chambers
   std::vector<Chamber> chambers_;
   std::vector<int> of_region_;
   Vec3 origin_ = Vec3::Zero();  ///< near the vessel, for the accuracy of the volumes

@@ -95,9 +95,13 @@ void BloodPressure::fill() {
   for (int c = 0; c < chambers_.count(); ++c) {
     auto& g = gradient_[std::size_t(c)];
     chambers_.gradient(c, on->q(), g);
-    const double p = pressure(c) - (prestressed_ ? 0 : reference(c));
+    const double p = excess_[std::size_t(c)] = pressure(c) - (prestressed_ ? 0 : reference(c));
     for (std::size_t i = 0; i < g.size(); ++i) on->filling.segment<3>(3 * chambers_.nodes(c)[i]) += p * g[i];
   }
+}
+
+void BloodPressure::add_gradient(BlockMatrix& a, double scale) const {
+  chambers_.add_second_derivative(on->q(), excess_, scale, a);
 }
 
 double BloodPressure::arterial(double h) const {

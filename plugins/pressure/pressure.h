@@ -26,7 +26,7 @@ class ChamberFeed {
   virtual void settle(const StepContext& context, const double* pressure, const double* yielding) = 0;
 };
 
-class BloodPressure final : public Constraint, public StatesLaw {
+class BloodPressure final : public Constraint, public FollowerLoad, public StatesLaw {
  public:
   static constexpr std::string_view kind_name = "pressure";
   static constexpr int max_chambers = 8;
@@ -132,6 +132,7 @@ class BloodPressure final : public Constraint, public StatesLaw {
   void reset() override;
   void append_state(std::vector<double>& out) const override;
   StatedLaw law() const override;
+  void add_gradient(BlockMatrix& a, double scale) const override;
   std::vector<CommandInfo> commands() const override;
   std::string run_command(std::string_view name, std::string_view argument) override;
 
@@ -157,6 +158,7 @@ class BloodPressure final : public Constraint, public StatesLaw {
   double phase_ = 0, systolic_now_ = 0, diastolic_now_ = 0, rate_ = 0;
   double systolic_wanted_ = 0, diastolic_wanted_ = 0, rate_wanted_ = 0;
   std::vector<double> pressure_, fluid_;
+  std::vector<double> excess_;  ///< over the pressure that the wall does not count, of each chamber, Pa
 
   // Of this step.
   double h_ = 0;  ///< its length, s

@@ -112,6 +112,9 @@ bool BloodPressure::make_chambers(PrepareContext& context) {
   yielding_.assign(n * n, 0.0);
   at_node_.assign(n, 0.0);
   mesh_.clear(int(n));
+  excess_.assign(n, 0.0);
+  chambers_.bind(on->system(), on->free_of_node());
+  on->filling_gradient = this;
   prestress_wall(&context);
   reset();
   return true;

@@ -112,6 +112,57 @@ TEST(Chambers, AddUpAndAreClosedEachForItself) {
   EXPECT_NEAR(sum, whole, 1e-13 * whole);
 }
 
+// The sum of the volumes has the second derivative of the closed surface, where all pressures are equal.
+TEST(Chambers, SecondDerivativeIsThatOfTheVolume) {
+  ShellBody body;
+  WallModel model;
+  model.wall = test::ball(Vec3(0.04, -0.01, 0.02), 0.004, 3);
+  model.regions = {"a", "b"};
+  for (const Vec3& x : model.wall.vertices) model.vertex_region.push_back(x.x() < 0.041 ? 0 : 1);
+  body.set_model(model);
+  Diagnostics diagnostics;
+  PrepareContext context{diagnostics, 0.01};
+  body.prepare(context);
+  Chambers chambers;
+  chambers.build(body, {{"a"}, {"b"}});
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto& t : model.wall.triangles)
+    for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(t[k], t[(k + 1) % 3]);
+  // Every seventh node is fixed and has no block.
+  std::vector<int> free_of_node;
+  int free_count = 0;
+  for (int i = 0; i < body.nodes(); ++i) free_of_node.push_back(i % 7 == 0 ? -1 : free_count++);
+  std::erase_if(pairs, [&](const auto& p) { return p.first % 7 == 0 || p.second % 7 == 0; });
+  for (auto& [i, j] : pairs) i = free_of_node[std::size_t(i)], j = free_of_node[std::size_t(j)];
+  BlockMatrix a;
+  a.set_pattern(free_count, pairs);
+  a.set_zero();
+  chambers.bind(a, free_of_node);
+  Random random(11);
+  VecX q = body.q(), d = VecX::Zero(q.size()), packed = VecX::Zero(3 * free_count), product = packed;
+  for (int i = 0; i < body.nodes(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      q[3 * i + c] += 2e-4 * random.uniform(-1, 1);
+      if (const int b = free_of_node[std::size_t(i)]; b >= 0) packed[3 * b + c] = d[3 * i + c] = random.uniform(-1, 1);
+    }
+  const double pressure[] = {1e4, 1e4};
+  chambers.add_second_derivative(q, pressure, -0.5, a);
+  a.add_product(packed.data(), product.data());
+  VecX change = VecX::Zero(q.size());  // the gradient is quadratic, so its difference is exact
+  std::vector<Vec3> g;
+  constexpr double e = 1e-3;
+  for (int c = 0; c < 2; ++c)
+    for (const double side : {-1.0, 1.0}) {
+      chambers.gradient(c, q + side * e * d, g);
+      for (std::size_t i = 0; i < g.size(); ++i)
+        change.segment<3>(3 * chambers.nodes(c)[i]) += side / (2 * e) * pressure[0] * g[i];
+    }
+  VecX wanted = VecX::Zero(3 * free_count);
+  for (int i = 0; i < body.nodes(); ++i)
+    if (const int b = free_of_node[std::size_t(i)]; b >= 0) wanted.segment<3>(3 * b) = -0.5 * change.segment<3>(3 * i);
+  EXPECT_TRUE(test::held("gradient of the load", (product - wanted).norm(), wanted.norm(), 1e-11));
+}
+
 TEST(Pressure, OnlyTheExcessOverTheMeanLoadsAWallWithoutTension) {
   Sphere t(R"(systolic="130 mmHg" diastolic="70 mmHg" heart_rate="60 1/min")");
   ASSERT_TRUE(t.pressure) << t.messages;

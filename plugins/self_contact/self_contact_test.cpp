@@ -167,6 +167,28 @@ TEST(SelfContact, AHandThatDrawsABladeAlongAVesselIsNotHeldBack) {
   }
 }
 
+// 0.45 mm inward in one step, which is more than the limit into a wall, and not so deep that the wall would invert.
+TEST(SelfContact, AHandThatTapsAVesselIsNotHeldBack) {
+  const std::string ball =
+      R"(<retractor id="ball" model="meshes/ball/tool.urdf" hand="right" home="0 0 3.5 mm" shaft="0 0 1" flat="1 0 0" coupling="2000 N/m"/>)";
+  VesselBench b(test::tube(2e-3, 16e-3, 17), 7.6e-3, ball, "ball", R"(friction="0")", R"(thickness="0.3 mm")", 100);
+  ASSERT_TRUE(b.s);
+  const Instrument& tool = *b.s->instrument_of(1);
+  Pose at = tool.home_pose();
+  const auto step = [&](double down) {
+    at.p.z() -= down;
+    b.hand(1, at);
+    b.s->step();
+    return tool.hand_force()[2];
+  };
+  while (step(0.01e-3) < 1e-3) ASSERT_GT(at.p.z(), 0) << "nothing was touched";
+  const double tapped = step(0.45e-3);
+  double held = 0;
+  for (int i = 0; i < 100; ++i) held = step(0);
+  EXPECT_GT(held, 5e-3);
+  EXPECT_LT(tapped, 2 * held) << "a wall without pressure softens as it is dented";
+}
+
 TEST(SelfContact, ASurfaceThatCannotTouchItselfIsRefused) {
   test::SceneFolder folder;
   folder.write("meshes/tube.obj", test::obj_text(test::tube(2e-3, 8e-3, 12)));

@@ -67,6 +67,7 @@ struct VesselBench {
               const std::string& contact, const std::string& self_contact, double sweeps = 200) {
     folder.write("meshes/vessel.obj", obj_text(vessel));
     folder.write("meshes/blade/tool.urdf", box_urdf(0.4e-3, 4e-3, 12e-3));
+    folder.write("meshes/ball/tool.urdf", test_tool_urdf(1e-3));
     folder.write("meshes/jaw/tool.urdf", box_urdf(1e-3, 1.5e-3, 9e-3));
     s = load_text(fmt::format(R"(<scene><solver max_sweeps="{}" tolerance="1e-9 m"/>
 <shell_body id="vessel" mesh="meshes/vessel.obj" mesh_unit="m"><membrane thickness="0.3 mm" young="1 MPa"/>

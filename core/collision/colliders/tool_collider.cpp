@@ -222,6 +222,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
   touch_time_ = 1;
   touching_piece_ = -1;
   touch_normals_.clear();
+  overlap_at_end_ = 0;
   if (mesh.tree().empty()) return;
   const Vec6 motion = displacement(start, free);
   const double horizon = 1 + settings.collision_horizon;
@@ -245,6 +246,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       touch_normals_.clear();
       for (const Proximity& x : found_)
         if (touching(x, settings) && touch_normals_.size() < max_touch_normals) touch_normals_.push_back(x.normal);
+      overlap_at_end_ = find_overlap(mesh, swept.at(1), settings);
     }
     if (reached.time > 0) add_those_on_free_side(settings, out);
     // If contacts were taken at the end, the result of sliding is already known.

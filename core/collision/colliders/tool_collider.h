@@ -90,6 +90,9 @@ class ToolCollider {
   /// did.
   double touch_time() const { return touch_time_; }
   int touching_piece() const { return touching_piece_; }  ///< the first to touch, -1: none
+  /// Overlap of that piece with the surface at the end of its free motion, m; 0 if it would be away, infinite if it
+  /// would be nearest to the opposite wall.
+  double overlap_at_end() const { return overlap_at_end_; }
   static constexpr std::size_t max_touch_normals = 64;
   /// Of the contacts that it then had, towards the tool; at most max_touch_normals.
   std::span<const Vec3> touch_normals() const { return touch_normals_; }
@@ -111,6 +114,7 @@ class ToolCollider {
                               std::vector<Proximity>& out);
   void slide_on(const CollisionMesh& mesh, const SweptPiece& swept, double t, const ToolContactSettings& settings,
                 std::vector<Proximity>& out);
+  double find_overlap(const CollisionMesh& mesh, const PlacedPiece& at, const ToolContactSettings& settings);
   void add_those_on_free_side(const ToolContactSettings& settings, std::vector<Proximity>& out) const;
   static void add(Proximity x, const ToolContactSettings& settings, std::vector<Proximity>& out);
   // Contacts at a moment (tool_contacts.cpp).
@@ -129,6 +133,7 @@ class ToolCollider {
   std::vector<Vec3> side_;  ///< per piece: surface normal where it was last near and outside; zero: none known
   double touch_time_ = 1;
   int touching_piece_ = -1;
+  double overlap_at_end_ = 0;
   std::vector<Vec3> touch_normals_;
   std::vector<Candidate> candidates_;
   std::vector<Proximity> found_, at_end_;

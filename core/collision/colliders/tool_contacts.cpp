@@ -2,6 +2,7 @@
 // Contacts of a tool's piece with a surface at one moment of the step.
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/collision/colliders/curved_contact.h"
 #include "core/collision/shapes/core_triangle.h"
@@ -207,6 +208,18 @@ bool ToolCollider::found_at_end(const CollisionMesh& mesh, const PlacedPiece& ex
     x.start_gap += std::max(0.0, -settings.max_correction - x.gap);
   }
   return !at_end_.empty();
+}
+
+double ToolCollider::find_overlap(const CollisionMesh& mesh, const PlacedPiece& at,
+                                  const ToolContactSettings& settings) {
+  at_end_.clear();
+  evaluate(mesh, at, settings, settings.alarm, at_end_);
+  if (at_end_.empty()) return 0;
+  drop_wrong_exits(at_end_, side_[std::size_t(at.piece)], settings.offset);
+  if (at_end_.empty()) return std::numeric_limits<double>::infinity();
+  double overlap = 0;
+  for (const Proximity& x : at_end_) overlap = std::max(overlap, -x.gap);
+  return overlap;
 }
 
 }  // namespace insula
