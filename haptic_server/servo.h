@@ -40,6 +40,7 @@ struct ServoSettings {
                  .eliminate_welds = true,
                  .extrapolate_frames = true,
                  .find_contacts = true,
+                 .predict_failure = true,
                  .reduced_dynamics = true};
     s.force_crossfade.within_s = 0.005;
     s.force_crossfade.share_per_s = 14;

@@ -16,7 +16,7 @@ constexpr double same_length = 0.1;  // ticks whose lengths differ by less share
 }  // namespace
 
 SubstepCorrection::SubstepCorrection(const SubstepCorrectionSettings& settings, int max_rows)
-    : settings_(settings), extrapolation_(max_rows) {
+    : settings_(settings), extrapolation_(max_rows), failure_(max_rows) {
   tick_.resize(max_rows);
   tick_.blocks.reserve(std::size_t(max_rows));
   for (auto* v : {&gap_, &rate_, &known_, &share_}) v->assign(std::size_t(max_rows), 0.0);
@@ -36,9 +36,12 @@ void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<Grasp
   tick_.blocks.assign(p.blocks.begin(), p.blocks.end());
   std::copy_n(p.lambda.begin(), n, known_.begin());
   std::fill_n(slips_.begin(), n, char(0));
-  for (const Block& b : p.blocks)
+  for (const Block& b : p.blocks) {
     for (int k = b.law == LawKind::friction ? 1 : 0; k < b.rows() && b.law != LawKind::box; ++k)
-      slips_[std::size_t(b.row + k)] = 1;
+      slips_[std::size_t(b.row + k)] = settings_.incremental_slip;
+    if (PredictedFailure::plastic(b))
+      slips_[std::size_t(b.row)] = settings_.predict_failure && known_[std::size_t(b.row)] != 0;
+  }
   for (std::size_t i = 0; i < n; ++i) {
     double gap = p.delta_free[i];
     const double* w = p.w.data() + i * std::size_t(p.stride);
@@ -46,6 +49,7 @@ void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<Grasp
     gap_[i] = gap;
     rate_[i] = p.rate[i];
   }
+  if (settings_.predict_failure) failure_.begin(p, {gap_.data(), n});
   find_tool_coupled_rows();
   extrapolation_.begin(p, grasped);
   begin_dynamics();
@@ -185,6 +189,7 @@ const ConstraintProblem& SubstepCorrection::next(double dt, const std::array<Vec
     moved_[t] = free;
   }
   dynamics_.predict();
+  if (settings_.predict_failure) failure_.apply(tick_.blocks);
   for (std::size_t i = 0; i < n; ++i) {
     double free = start(i);
     if (dynamics_.any()) free += dynamics_.displacement(p.reduced.row(i));
@@ -226,6 +231,7 @@ const ConstraintProblem& SubstepCorrection::with_patches(const std::array<Vec6, 
 void SubstepCorrection::solved(std::span<const double> lambda, std::span<const double> delta) noexcept {
   const ConstraintProblem& p = *step_;
   const std::size_t n = std::size_t(p.rows);
+  if (settings_.predict_failure) failure_.solved(lambda, delta, dt_);
   if (patches_) patches_->take_forces(lambda, n);
   if (dynamics_.any()) {
     dynamics_.clear_force();
@@ -251,6 +257,10 @@ void SubstepCorrection::solved(std::span<const double> lambda, std::span<const d
     gap_[i] = delta[i];
     known_[i] = lambda[i];
   }
+  // A rigid-plastic row resists every displacement from its first touch on.
+  if (settings_.predict_failure)
+    for (const Block& b : p.blocks)
+      if (PredictedFailure::plastic(b) && lambda[std::size_t(b.row)] != 0) slips_[std::size_t(b.row)] = 1;
 }
 
 }  // namespace insula

@@ -20,6 +20,7 @@
 #include "haptic_server/contact_frame_extrapolation.h"
 #include "haptic_server/grasping_tool.h"
 #include "haptic_server/patch_contacts.h"
+#include "haptic_server/predicted_failure.h"
 #include "haptic_server/reduced_dynamics.h"
 
 namespace insula {
@@ -31,10 +32,11 @@ struct SubstepCorrectionSettings {
   bool eliminate_welds = false;     ///< a grasped body is one with its tool, with the inertia for a tick
   bool extrapolate_frames = false;  ///< contact directions continue to rotate with the tool
   bool find_contacts = false;       ///< contacts are found anew in each tick, where the problem has surface patches
+  bool predict_failure = false;     ///< fibres part at the tick in which they are cut or torn
   bool reduced_dynamics = false;    ///< tissue has inertia, where the problem has a reduced model; needs the first two
   bool any() const {
     return substep_compliance || extrapolate_tissue || incremental_slip || eliminate_welds || extrapolate_frames ||
-           find_contacts;
+           find_contacts || predict_failure;
   }
 };
 
@@ -50,6 +52,7 @@ class SubstepCorrection {
   /// Makes the next problem independent of the last one. Grasped bodies begin at their poses in that problem.
   void reset() noexcept {
     for (GraspingTool& tool : grasping_) tool.lose();
+    failure_.reset();
   }
   /// The problem of the next tick, `dt_s` after the last one; the first one covers the problem's age instead. `moved`:
   /// displacement of the devices since the problem's poses, tool by tool. The first rows are those of the problem.
@@ -78,17 +81,18 @@ class SubstepCorrection {
   }
   std::size_t tools() const { return std::min<std::size_t>(step_->tools.size(), 2); }
   /// The row's gap at the start of the tick.
-  double start(std::size_t i) const { return settings_.incremental_slip && slips_[i] ? 0.0 : gap_[i]; }
+  double start(std::size_t i) const { return slips_[i] ? 0.0 : gap_[i]; }
 
   SubstepCorrectionSettings settings_;
   ContactFrameExtrapolation extrapolation_;
   const ConstraintProblem* step_ = nullptr;
   PatchContacts* patches_ = nullptr;
   ConstraintProblem tick_;  ///< W and delta_free of the tick
+  PredictedFailure failure_;
   ReducedDynamics dynamics_;
   AlignedVector<double> w_residual_;  ///< W of the step without that of the modes, as W
   std::vector<double> gap_, rate_, known_, share_;
-  std::vector<char> slips_;           ///< tangent rows
+  std::vector<char> slips_;           ///< tangent rows, and rigid-plastic ones
   std::vector<int> touching_;         ///< rows that touch a body
   std::vector<int> tool_coupled_;     ///< rows in which a tool has a part
   std::array<Vec6, 2> moved_, went_;  ///< of the free tools, since the problem and in the tick

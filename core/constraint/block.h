@@ -48,6 +48,14 @@ struct Block {
   /// For use between steps: rotation vector, rad, of a friction block's directions about its contact point while the
   /// tool moves on by its displacement in the step.
   std::array<float, 3> frame_rotation{};
+  // For use between steps: failure of a box row, which then bears nothing. The engine's components fail by themselves.
+  /// Blocks of the same group fail together, such as a fibre and the blade in it; 0: the block fails alone.
+  std::int32_t failure_group = 0;
+  /// Displacement since the step began at which the row fails, m; 0: at none. Such a row is rigid-plastic: it resists
+  /// every further displacement instead of that since the step began. The share that is left of this displacement is
+  /// the integrity of its group, which divides the others' compliance and multiplies their failure_force.
+  float failure_travel = 0;
+  float failure_force = 0;  ///< |lambda| above which the row fails, N; 0: it bears any
   bool operator==(const Block&) const = default;
   int rows() const { return law == LawKind::friction ? 3 : law == LawKind::patch ? 2 : 1; }
 };

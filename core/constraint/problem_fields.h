@@ -79,6 +79,9 @@ inline constexpr auto block_fields = std::tuple{
     block_field<std::int32_t>(&Block::owner, {-1, infinite, "unknown owner or role"}),
     block_field<std::int8_t>(&Block::role, {0, double(BlockRole::last), "unknown owner or role"}),
     block_field<float>(&Block::frame_rotation, {-1, 1, "directions turn too far in a step"}),
+    block_field<std::int16_t>(&Block::failure_group, {0, infinite, "limit of failure out of range"}),
+    block_field<float>(&Block::failure_travel, {0, 1, "limit of failure out of range"}),
+    block_field<float>(&Block::failure_force, {0, 1e4, "limit of failure out of range"}),
 };
 
 /// Calls f(field, index) for each field of a list.

@@ -38,7 +38,8 @@ void Condenser::find_rows_at_tools(const ConstraintProblem& full, std::vector<ch
 void Condenser::find_tool_coupled_rows(const ConstraintProblem& full) {
   find_rows_at_tools(full, tool_coupled_);
   for (const Block& b : full.blocks)
-    if (b.role == BlockRole::surface) tool_coupled_[std::size_t(b.row)] = 1;  // contacts between steps use them
+    // Contacts between steps use the first. The second fail with a row at a tool.
+    if (b.role == BlockRole::surface || b.failure_group != 0) tool_coupled_[std::size_t(b.row)] = 1;
   is_weld_.assign(std::size_t(full.rows), 0);
   for (std::size_t t = 0; t < std::min<std::size_t>(full.tools.size(), 2); ++t)
     if (const int weld = first_weld_row(full, t); weld >= 0) std::fill_n(is_weld_.begin() + weld, weld_rows, char(1));

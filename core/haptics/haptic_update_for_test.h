@@ -47,6 +47,9 @@ inline void add_blocks(ConstraintProblem& p, int boxes, int contacts, ProblemRan
     b.owner = 3 * k - 1;
     b.role = BlockRole(k % (int(BlockRole::last) + 1));
     for (float& by : b.frame_rotation) by = float(0.1 * random());
+    b.failure_group = k % 3;
+    b.failure_travel = float(k % 4) * 1e-4F;
+    b.failure_force = float(k % 5) * 0.01F;
     if (k % 2 == 1 && contacts > 0) {
       --contacts;
       b.law = LawKind::friction;

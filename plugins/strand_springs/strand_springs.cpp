@@ -12,10 +12,11 @@ surfaces may be the same one (an aneurysm's sac and the branches at its neck). A
 face each other and are not near along the surface. The path between them along the edges must be more than three
 times as long as the strand.
 
-A blade that touches a strand meets a rigid-plastic resistance. This is one row on their relative motion whose force
-is at most cut_force. Where the strand yields, the blade's travel through it damages it. k decreases in proportion,
-and after cut_length the strand is severed. It is also severed when it is pulled beyond `strength` times its remaining
-integrity. It then counts as torn, or as cut if a blade is in it.
+A blade that comes within `reach` of a strand meets a rigid-plastic resistance. This is one row on their relative
+motion whose force is at most cut_force, and whose violation is what the blade has still to go. Where the strand yields,
+the blade's travel through it damages it. k decreases in proportion, and after cut_length the strand is severed. It is
+also severed when it is pulled beyond `strength` times its remaining integrity. It then counts as torn, or as cut if a
+blade is in it.
 
 Source: Dequidt et al. 2015, section 3.3 (springs between lobes as constraints); forces of dissection: Marcus et al.
 2014.
@@ -170,46 +171,80 @@ void StrandSprings::generate(PrepareContext& context) {
   tell_spun();
 }
 
-void StrandSprings::Blade::place() {
+void StrandSprings::Blade::place(double steps) {
   cutting = tool->cutting();
   if (!cutting) return;
   middle.setZero();
+  advance = 0;
   for (std::size_t i = 0; i < edges.size(); ++i)
     for (std::size_t k = 0; k < 2; ++k) {
       edges[i][k] = tool->pose().apply(tool->tool().blade_edges[i][k]);
       middle += edges[i][k] / (2 * double(edges.size()));
+      advance = std::max(advance, steps * tool->free_displacement(tool->point(edges[i][k])).norm());
     }
   radius = 0;
   for (const auto& edge : edges)
     for (const Vec3& p : edge) radius = std::max(radius, (p - middle).norm());
 }
 
-void StrandSprings::detect(const StepContext&) {
-  for (Blade& blade : blades_) blade.place();
+namespace {
+
+/// Distance that a point goes, on its way by u, until it is as close as `reach` to the one that is `away` from it;
+/// infinite if it never is. 0 if it is that close already.
+double distance_to_reach(const Vec3& away, const Vec3& u, double reach) {
+  const double c = away.squaredNorm() - reach * reach, b = away.dot(u), a = u.squaredNorm();
+  if (c <= 0) return 0;
+  const double discriminant = b * b - a * c;
+  if (!(b > 0) || !(discriminant >= 0)) return infinite;
+  return c / (b + std::sqrt(discriminant)) * std::sqrt(a);
+}
+
+}  // namespace
+
+/// Finds the blade that is in the strand, or else the one that reaches it first.
+void StrandSprings::find_blade(Strand& s, double steps) const {
+  const Vec3 pa = s.a.body->position(s.a), pb = s.b.body->position(s.b), axis = (pb - pa).normalized();
+  double least_gap = infinite, least_distance = infinite;
+  for (const Blade& blade : blades_) {
+    const double range = reach() + blade.advance;
+    if (!blade.cutting ||
+        (0.5 * (pa + pb) - blade.middle).norm() > 0.5 * (pb - pa).norm() + blade.radius + 1.001 * range)
+      continue;
+    for (const auto& [e0, e1] : blade.edges) {
+      double u, w;
+      closest_segments(pa, pb, e0, e1, u, w);
+      const Vec3 on_strand = pa + u * (pb - pa), on_edge = e0 + w * (e1 - e0), away = on_strand - on_edge;
+      const double distance = away.norm();
+      if (distance > range) continue;
+      const MaterialPoint point = blade.tool->point(on_strand);
+      double gap = 0;
+      if (distance > reach()) {
+        Vec3 motion = blade.tool->free_displacement(point);
+        motion -= motion.dot(axis) * axis;
+        gap = distance_to_reach(away, motion, reach());
+        if (!(gap <= steps * motion.norm())) continue;
+      }
+      if (gap > least_gap || (gap == least_gap && distance > least_distance)) continue;
+      least_gap = gap;
+      least_distance = distance;
+      s.blade = blade.tool;
+      s.blade_point = point;  // the same point as on the strand: no net moment
+      s.along = u;
+      s.blade_gap = gap;
+    }
+  }
+}
+
+void StrandSprings::detect(const StepContext& context) {
+  const double steps = 1 + context.collision_horizon_s / context.h;
+  for (Blade& blade : blades_) blade.place(steps);
   for (Strand& s : strands_) {
     s.blade = nullptr;
     if (s.severed) continue;
-    const Vec3 pa = s.a.body->position(s.a), pb = s.b.body->position(s.b);
-    double best = reach();
-    for (const Blade& blade : blades_) {
-      if (!blade.cutting ||
-          (0.5 * (pa + pb) - blade.middle).norm() > 0.5 * (pb - pa).norm() + blade.radius + 1.001 * best)
-        continue;
-      for (const auto& [e0, e1] : blade.edges) {
-        double u, w;
-        closest_segments(pa, pb, e0, e1, u, w);
-        const Vec3 on_strand = pa + u * (pb - pa), on_edge = e0 + w * (e1 - e0);
-        const double distance = (on_strand - on_edge).norm();
-        if (distance > best) continue;
-        best = distance;
-        s.blade = blade.tool;
-        s.blade_point = blade.tool->point(on_strand);  // the same point as on the strand: no net moment
-        s.along = u;
-      }
-    }
+    find_blade(s, steps);
     if (!s.blade) continue;
     // The strand resists along the blade's motion across it.
-    const Vec3 axis = (pb - pa).normalized();
+    const Vec3 axis = (s.b.body->position(s.b) - s.a.body->position(s.a)).normalized();
     Vec3 motion = s.blade->free_displacement(s.blade_point) - (1 - s.along) * s.a.body->unforced_displacement(s.a) -
                   s.along * s.b.body->unforced_displacement(s.b);
     motion -= motion.dot(axis) * axis;
@@ -224,6 +259,9 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
     s.row = s.blade_row = -1;
     key += 2;
     if (s.severed) continue;
+    const double integrity = 1 - s.damage;
+    const bool cut = s.blade && cut_force() > 0;
+    const int group = cut ? builder.rows() + 1 : 0;  // unlike that of other strands
     const Vec3 d = s.a.body->position(s.a) - s.b.body->position(s.b);
     const double length = d.norm();
     if (length > 1e-9) {
@@ -236,7 +274,9 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
         Block block;
         block.id = row_id(*this, key);
         block.role = BlockRole::fibre;
-        block.compliance = 1.0 / (stiffness() * (1 - s.damage));
+        block.compliance = 1.0 / (stiffness() * integrity);
+        block.failure_group = group;
+        block.failure_force = float(strength() * integrity);
         block.upper = load_direction.is("both") ? infinite : 0.0;
         s.row = builder.add(block);
         builder.violation(s.row, length - s.rest);
@@ -244,13 +284,16 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
         builder.point(s.row, s.b, -u);
       }
     }
-    if (s.blade && cut_force() > 0) {
+    if (cut) {
       Block block;
       block.id = row_id(*this, key + 1);
       block.role = BlockRole::contact;
       block.lower = -cut_force();
       block.upper = 0;
+      block.failure_group = group;
+      block.failure_travel = float(integrity * cut_length());
       s.blade_row = builder.add(block);
+      builder.violation(s.blade_row, -s.blade_gap);
       builder.point(s.blade_row, s.blade_point, s.push);
       if (s.along < 1) builder.point(s.blade_row, s.a, -(1 - s.along) * s.push);
       if (s.along > 0) builder.point(s.blade_row, s.b, -s.along * s.push);
@@ -274,7 +317,7 @@ void StrandSprings::finish(const StepContext& context, const ConstraintSolution&
       double travel;
       if (s.blade_row >= 0) travel = solution.delta[s.blade_row];
       else  // no resistance: the free motion cuts
-        travel = s.push.dot(s.blade->free_displacement(s.blade_point));
+        travel = s.push.dot(s.blade->free_displacement(s.blade_point)) - s.blade_gap;
       s.damage += std::max(0.0, travel) / cut_length();
       if (s.damage >= 1) {
         part(context, s, cut, cut_force());

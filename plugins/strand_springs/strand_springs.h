@@ -145,7 +145,8 @@ class StrandSprings : public Constraint, public StrandSet, public StatesLaw {
     int blade_row = -1;
     Instrument* blade = nullptr;
     MaterialPoint blade_point;
-    double along = 0;  ///< 0 at a, 1 at b
+    double along = 0;      ///< 0 at a, 1 at b
+    double blade_gap = 0;  ///< what the blade still goes until it is within `reach`, m
     Vec3 push = Vec3::Zero();
   };
   /// A strand has been spun between two vertices of `from` and `to`.
@@ -162,9 +163,11 @@ class StrandSprings : public Constraint, public StrandSet, public StatesLaw {
     std::vector<std::array<Vec3, 2>> edges;
     Vec3 middle = Vec3::Zero();
     double radius = 0;
-    void place();
+    double advance = 0;  ///< of the edges in so many steps of free motion, m
+    void place(double steps);
   };
   void generate(PrepareContext& context);
+  void find_blade(Strand& s, double steps) const;
   void tell_spun() const {
     for (const auto& call : when_spun_) call();
   }

@@ -72,6 +72,8 @@ std::vector<Variant> variants(bool ablation) {
     out.push_back({"+ contact-frame extrapolation", servo, Variant::predicted});
     servo.servo.substep.find_contacts = full.substep.find_contacts;
     out.push_back({"+ contacts in each tick", servo});
+    servo.servo.substep.predict_failure = full.substep.predict_failure;
+    out.push_back({"+ failure prediction", servo});
     servo.servo.substep.reduced_dynamics = full.substep.reduced_dynamics;
     out.push_back({"+ reduced dynamics", servo});
   }
