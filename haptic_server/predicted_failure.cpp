@@ -12,6 +12,14 @@ constexpr double steps_late = 3, message_s = 0.01;
 
 double worn(double delta, int sign) { return sign == 0 ? std::abs(delta) : std::max(0.0, sign * delta); }
 
+unsigned tools_in(const ConstraintProblem& p, int row) {
+  unsigned bits = 0;
+  for (std::size_t t = 0; t < std::min<std::size_t>(p.tools.size(), 2); ++t)
+    for (int c = 0; c < 6; ++c)
+      if (p.tools[t].jacobian(row, c) != 0) bits |= 1U << t;
+  return bits;
+}
+
 }  // namespace
 
 PredictedFailure::PredictedFailure(int max_rows) {
@@ -21,13 +29,17 @@ PredictedFailure::PredictedFailure(int max_rows) {
 
 void PredictedFailure::reset() noexcept {
   remembered_ = {};
-  any_ = false;
+  watched_.clear();
+  release_ = 0;
 }
 
 void PredictedFailure::begin(const ConstraintProblem& p, std::span<const double> delta) noexcept {
+  for (const Watched& w : watched_)
+    if (w.bears && !w.failed && w.wear >= 0 && wear_[std::size_t(w.wear)].row == w.row &&
+        std::none_of(p.blocks.begin(), p.blocks.end(), [&](const Block& b) { return b.id == w.id; }))
+      release_ |= w.tools;
   watched_.clear();
   wear_.clear();
-  any_ = false;
   step_s_ = p.step_s;
   for (const Block& b : p.blocks) {
     if (!plastic(b)) continue;
@@ -37,7 +49,11 @@ void PredictedFailure::begin(const ConstraintProblem& p, std::span<const double>
   for (std::size_t k = 0; k < p.blocks.size(); ++k) {
     const Block& b = p.blocks[k];
     if (b.law != LawKind::box || (b.failure_group == 0 && !plastic(b) && !(b.failure_force > 0))) continue;
-    Watched w{b.id, int(k), b.row, b.failure_group, -1, false, b.compliance, double(b.failure_force)};
+    Watched w{b.id,         int(k),
+              b.row,        b.failure_group,
+              -1,           false,
+              false,        tools_in(p, b.row),
+              b.compliance, double(b.failure_force)};
     for (std::size_t i = 0; i < p.blocks.size() && w.wear < 0; ++i) {
       const Block& other = p.blocks[i];
       if (!plastic(other) || (i != k && (b.failure_group == 0 || other.failure_group != b.failure_group))) continue;
@@ -50,7 +66,8 @@ void PredictedFailure::begin(const ConstraintProblem& p, std::span<const double>
     const auto known = std::find_if(remembered_.begin(), remembered_.end(),
                                     [&](const Remembered& r) { return r.left_s > 0 && r.id == watched_[k].id; });
     const bool worn_out = watched_[k].wear >= 0 && wear_[std::size_t(watched_[k].wear)].integrity() == 0;
-    if (known != remembered_.end() || worn_out) fail(k);
+    if (known != remembered_.end()) watched_[k].failed = true;  // it let go when it failed
+    else if (worn_out) fail(k);
   }
 }
 
@@ -67,8 +84,9 @@ void PredictedFailure::solved(std::span<const double> lambda, std::span<const do
   for (Remembered& r : remembered_) r.left_s -= dt_s;
   for (Wear& w : wear_) w.travel += worn(delta[std::size_t(w.row)], w.sign);
   for (std::size_t k = 0; k < watched_.size(); ++k) {
-    const Watched& w = watched_[k];
+    Watched& w = watched_[k];
     if (w.failed) continue;
+    w.bears = lambda[std::size_t(w.row)] != 0;
     const double integrity = w.wear >= 0 ? wear_[std::size_t(w.wear)].integrity() : 1;
     const bool torn = w.force > 0 && std::abs(lambda[std::size_t(w.row)]) > w.force * integrity;
     if (integrity == 0 || torn) fail(k);
@@ -77,12 +95,12 @@ void PredictedFailure::solved(std::span<const double> lambda, std::span<const do
 
 // With all of its group.
 void PredictedFailure::fail(std::size_t watched) noexcept {
-  any_ = true;
   const int group = watched_[watched].group;
   for (std::size_t k = 0; k < watched_.size(); ++k) {
     Watched& w = watched_[k];
     if (w.failed || (k != watched && (group == 0 || w.group != group))) continue;
     w.failed = true;
+    release_ |= w.tools;
     remember(w.id);
   }
 }

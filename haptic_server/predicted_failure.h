@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/constraint/problem.h"
@@ -27,15 +28,17 @@ class PredictedFailure {
   void apply(std::span<Block> blocks) const noexcept;
   /// Takes the tick's solution. delta: of plastic rows that bear, since the tick began.
   void solved(std::span<const double> lambda, std::span<const double> delta, double dt_s) noexcept;
-  /// Whether a row of the problem has failed.
-  bool any() const { return any_; }
+  /// The tools whose rows let go in the coming tick, as bits: the rows have failed, or a blade is out of its strand in
+  /// a new problem. That change of their force is not to be faded out. Resets itself.
+  unsigned take_release() noexcept { return std::exchange(release_, 0U); }
 
  private:
   struct Watched {
     std::uint64_t id;
     int block, row, group;
     int wear;  ///< of its group, index of wear_; -1: it does not wear
-    bool failed;
+    bool failed, bears;
+    unsigned tools;  ///< bits of those that have a part in the row
     double compliance, force;
   };
   struct Wear {
@@ -54,7 +57,7 @@ class PredictedFailure {
   std::vector<Wear> wear_;
   std::array<Remembered, 64> remembered_;
   double step_s_ = 0;
-  bool any_ = false;
+  unsigned release_ = 0;
 };
 
 }  // namespace insula

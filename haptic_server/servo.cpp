@@ -58,6 +58,9 @@ void Servo::reset() noexcept {
 }
 
 void Servo::force_crossfade(ServoResult& result, double dt) noexcept {
+  std::array<bool, 2> released{};  // hand by hand
+  for (std::size_t t = 0; t < tool_count(); ++t)
+    released[std::size_t(problem_->tools[t].hand & 1)] = substep_.released(t);
   for (std::size_t i = 0; i < 2; ++i) {
     ServoHand& hand = result.hand[i];
     if (!hand.valid) {
@@ -66,7 +69,8 @@ void Servo::force_crossfade(ServoResult& result, double dt) noexcept {
     }
     Vec6 now;
     now << hand.force, hand.torque;
-    now = force_crossfade_[i](settings_.force_crossfade, fresh_problem_ || fresh_contacts_, now, dt);
+    const bool fresh = (fresh_problem_ || fresh_contacts_) && !released[i];
+    now = force_crossfade_[i](settings_.force_crossfade, fresh, now, dt);
     hand.force = now.head<3>();
     hand.torque = now.tail<3>();
   }

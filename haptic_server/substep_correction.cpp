@@ -189,7 +189,10 @@ const ConstraintProblem& SubstepCorrection::next(double dt, const std::array<Vec
     moved_[t] = free;
   }
   dynamics_.predict();
-  if (settings_.predict_failure) failure_.apply(tick_.blocks);
+  if (settings_.predict_failure) {
+    failure_.apply(tick_.blocks);
+    released_ = failure_.take_release();
+  }
   for (std::size_t i = 0; i < n; ++i) {
     double free = start(i);
     if (dynamics_.any()) free += dynamics_.displacement(p.reduced.row(i));

@@ -60,6 +60,8 @@ class SubstepCorrection {
   const ConstraintProblem& next(double dt_s, const std::array<Vec6, 2>& moved) noexcept;
   /// Takes the solution of that problem.
   void solved(std::span<const double> lambda, std::span<const double> delta) noexcept;
+  /// Whether rows of the tool let go in the last tick, so that the change of its force is no error (PredictedFailure).
+  bool released(std::size_t tool) const { return (released_ >> tool & 1U) != 0; }
   /// The tool after the tick if it grasps a body, else null.
   const GraspingTool* grasping(std::size_t tool) const { return grasped_[tool].any ? &grasping_[tool] : nullptr; }
   /// Force and moment of all rows on a tool after the tick, about its origin, N and N m.
@@ -99,6 +101,7 @@ class SubstepCorrection {
   std::array<Vec6, 2> push_;          ///< H_tool^T known, and that of the patches' contacts
   std::array<GraspedBody, 2> grasped_;
   std::array<GraspingTool, 2> grasping_;
+  unsigned released_ = 0;
   double age_ = 0, dt_ = 0, compliance_dt_ = 0;
   bool first_ = true, second_ = false;  ///< whether the next tick is the first or second of its problem
 };

@@ -189,15 +189,17 @@ void StrandSprings::Blade::place(double steps) {
 
 namespace {
 
-/// Distance that a point goes, on its way by u, until it is as close as `reach` to the one that is `away` from it;
-/// infinite if it never is. 0 if it is that close already.
-double distance_to_reach(const Vec3& away, const Vec3& u, double reach) {
-  const double c = away.squaredNorm() - reach * reach, b = away.dot(u), a = u.squaredNorm();
-  if (c <= 0) return 0;
-  const double discriminant = b * b - a * c;
-  if (!(b > 0) || !(discriminant >= 0)) return infinite;
-  return c / (b + std::sqrt(discriminant)) * std::sqrt(a);
-}
+/// The part of a way along the unit vector u that lies within `reach` of a point that is `away` from its start, m;
+/// infinite if there is none ahead.
+struct Passage {
+  double begin = infinite, end = infinite;
+  Passage(const Vec3& away, const Vec3& u, double reach) {
+    const double middle = away.dot(u), half2 = reach * reach - (away - middle * u).squaredNorm();
+    if (!(half2 >= 0) || middle + std::sqrt(half2) < 0) return;
+    end = middle + std::sqrt(half2);
+    begin = std::max(0.0, middle - std::sqrt(half2));
+  }
+};
 
 }  // namespace
 
@@ -221,7 +223,7 @@ void StrandSprings::find_blade(Strand& s, double steps) const {
       if (distance > reach()) {
         Vec3 motion = blade.tool->free_displacement(point);
         motion -= motion.dot(axis) * axis;
-        gap = distance_to_reach(away, motion, reach());
+        gap = Passage(away, motion.stableNormalized(), reach()).begin;
         if (!(gap <= steps * motion.norm())) continue;
       }
       if (gap > least_gap || (gap == least_gap && distance > least_distance)) continue;
@@ -230,6 +232,7 @@ void StrandSprings::find_blade(Strand& s, double steps) const {
       s.blade = blade.tool;
       s.blade_point = point;  // the same point as on the strand: no net moment
       s.along = u;
+      s.blade_away = away;
       s.blade_gap = gap;
     }
   }
@@ -290,8 +293,11 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
       block.role = BlockRole::contact;
       block.lower = -cut_force();
       block.upper = 0;
-      block.failure_group = group;
-      block.failure_travel = float(integrity * cut_length());
+      // A blade that passes the strand before it has cut it leaves it whole.
+      const double cuts_after = integrity * cut_length();
+      const double passes_after = Passage(s.blade_away, s.push, reach()).end - s.blade_gap;
+      block.failure_group = cuts_after <= passes_after ? group : 0;
+      block.failure_travel = float(std::max(1e-9, std::min(cuts_after, passes_after)));
       s.blade_row = builder.add(block);
       builder.violation(s.blade_row, -s.blade_gap);
       builder.point(s.blade_row, s.blade_point, s.push);

@@ -145,8 +145,9 @@ class StrandSprings : public Constraint, public StrandSet, public StatesLaw {
     int blade_row = -1;
     Instrument* blade = nullptr;
     MaterialPoint blade_point;
-    double along = 0;      ///< 0 at a, 1 at b
-    double blade_gap = 0;  ///< what the blade still goes until it is within `reach`, m
+    double along = 0;                ///< 0 at a, 1 at b
+    Vec3 blade_away = Vec3::Zero();  ///< from the blade's edge to the strand, m
+    double blade_gap = 0;            ///< what the blade still goes until it is within `reach`, m
     Vec3 push = Vec3::Zero();
   };
   /// A strand has been spun between two vertices of `from` and `to`.
