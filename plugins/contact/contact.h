@@ -58,7 +58,7 @@ class Contact final : public Constraint, public StatesLaw {
        .max = "100 mm",
        .doc = "a tool that goes into a wall (a surface with a thickness) moves by no more than this in a step, and one "
               "in a hand along the wall by up to three times as much; the rest follows in the next ones; a tool that "
-              "leaves the wall is free",
+              "leaves the wall is free, and so is one in a hand that ends the step at most twice as deep",
        .formerly = "max_push"}};
   Param<Length> tissue_max_step_displacement{this,
                                              {.name = "tissue_max_step_displacement",

@@ -189,7 +189,7 @@ void StrandSprings::Blade::place(double steps) {
 
 namespace {
 
-/// The part of a way along the unit vector u that lies within `reach` of a point that is `away` from its start, m;
+/// The part of a path along the unit vector u that lies within `reach` of a point that is `away` from its start, m;
 /// infinite if there is none ahead.
 struct Passage {
   double begin = infinite, end = infinite;
@@ -319,11 +319,12 @@ void StrandSprings::finish(const StepContext& context, const ConstraintSolution&
   for (Strand& s : strands_) {
     if (s.severed) continue;
     s.tension = s.row >= 0 ? -solution.lambda[s.row] : 0;
+    double travel = 0;
+    if (s.blade_row >= 0) travel = solution.delta[s.blade_row];
+    else if (s.blade)  // no resistance: the free motion cuts
+      travel = s.push.dot(s.blade->free_displacement(s.blade_point)) - s.blade_gap;
+    if (s.blade_gap > 0 && travel <= 0) s.blade = nullptr;  // has not reached the strand in the step
     if (s.blade) {
-      double travel;
-      if (s.blade_row >= 0) travel = solution.delta[s.blade_row];
-      else  // no resistance: the free motion cuts
-        travel = s.push.dot(s.blade->free_displacement(s.blade_point)) - s.blade_gap;
       s.damage += std::max(0.0, travel) / cut_length();
       if (s.damage >= 1) {
         part(context, s, cut, cut_force());

@@ -194,6 +194,18 @@ TEST(StrandSprings, ResistsWithCutForceAndPartsAfterCutLength) {
   EXPECT_EQ(severed_at, 5);
 }
 
+// The servo knows of the blade already, but the pull has torn the strand.
+TEST(StrandSprings, ABladeThatIsOnItsPathCutsNothingYet) {
+  CutBed t("stiffness=\"30 N/m\" slack=\"0.9\" strength=\"0.02 N\" reach=\"0.2 mm\"");
+  ASSERT_TRUE(t.strands && t.knife);
+  t.s->set_collision_horizon(0.1);
+  t.move(0.00035);
+  ASSERT_EQ(t.s->problem().rows, 2) << "strand and blade";
+  EXPECT_NEAR(t.s->problem().delta_free[1], -0.00015, 1e-9) << "0.35 mm off, 0.2 mm of reach";
+  ASSERT_EQ(t.s->events().size(), 1u);
+  EXPECT_EQ(t.s->events()[0].kind, "strand_torn");
+}
+
 TEST(StrandSprings, BluntOrWithoutTheButtonDoesNotCut) {
   for (const char* sharp : {"never", "button"}) {
     CutBed t("cut_force=\"0.045 N\" cut_length=\"0.3 mm\"", sharp);
