@@ -14,7 +14,7 @@ namespace insula {
 namespace {
 
 constexpr std::size_t most_offers = 600;  // that are looked at
-constexpr int rows_for_modes = 8;         // whose place in the message a reduced model takes
+constexpr int rows_for_modes = 8;         // whose place in the message a reduced model and the laws of failure take
 
 bool moves(const Surface& s) { return s.body().blocks() > 0; }
 
