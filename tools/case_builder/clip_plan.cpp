@@ -129,7 +129,7 @@ ClipPlan plan_clip(const artery::Vessel& v, const Solid& floor, const std::vecto
         const double cost = std::pow(off / 12, 2) + std::pow(angle / 60, 2) + 1.2 * std::max(0.0, needed - clip.blade) +
                             0.35 * std::max(0.0, clip.blade - needed - 1) +
                             1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening) + 1.2 * back;
-        if (cost < least) least = cost, best = {clip, pose, needed, off, lift, slide - back, angle, back};
+        if (cost < least) least = cost, best = {clip, pose, needed, off, lift, slide - back, angle, back, false};
       }
       if (o.turn) break;
     }
@@ -137,6 +137,7 @@ ClipPlan plan_clip(const artery::Vessel& v, const Solid& floor, const std::vecto
   if (!known)
     throw InputError("--clip: the library has no clip \"" + o.clip +
                      "\" with a straight clamping line; see meshes/clips/README.md");
+  best.leaves_remnant = best.clip.blade < best.needed - past || best.drawn_back > past;
   if (best.clip.blade < best.needed - past)
     notes.push_back({Note::Kind::problem,
                      fmt::format("The flattened neck is {:.1f} mm wide; the blades of {} reach over {:.1f} mm of it.",

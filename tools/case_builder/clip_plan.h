@@ -40,6 +40,7 @@ struct ClipPlan {
   double off_view = 0;  ///< of the shaft from the line of sight, degrees
   double lift = 0, slide = 0, turn = 0;
   double drawn_back = 0;  ///< how far the tips stay short of where they should be, so that they keep off the floor, mm
+  bool leaves_remnant = false;  ///< the blades are too short, or the floor keeps them back; a note says so
 };
 /// A placed vessel's clip: the options' choices, and the best of the rest. The tips keep off `floor` (the insula, which
 /// does not give way: blades that run against it are lifted off the neck). Throws InputError when a wanted clip does

@@ -10,7 +10,7 @@
 #include "tools/case_builder/dissection_script.h"
 #include "tools/case_builder/motion_script.h"
 #include "tools/case_builder/opening_play.h"
-#include "tools/case_builder/place.h"
+#include "tools/case_builder/rupture_script.h"
 #include "tools/case_builder/scene_text.h"
 #include "tools/case_builder/wall.h"
 
@@ -27,35 +27,6 @@ std::string clipping_motion(const ClipPlan& plan) {
   return m.csv();
 }
 
-std::string rupture_motion(const ClipPlan& plan, const ApplierPose& temporary, const std::string& clip,
-                           const artery::Neck& neck) {
-  // Behind the temporary clip the parent is slack. Blades that lay as low as on a full one would take it in.
-  ApplierPose permanent = plan.pose;
-  permanent.tip += 0.3 * neck.diameter * neck.normal;
-  MotionScript m;
-  m.command(1, "bleeding rupture");
-  m.command(0.1, "applier load " + clip);
-  m.place_clip(temporary, 9, 2.0);
-  ApplierPose away = drawn_back(temporary, out_of_field);
-  away.tip += 30 * to_surgeon;
-  m.key(true, 0.8, away);
-  m.command(std::round((m.time(true) + 0.2) * 1000) / 1000, "applier load " + plan.clip.name);
-  m.key(true, 0.5, away);
-  m.place_clip(permanent, out_of_field, 2.5);
-  m.take_clip(temporary);
-  m.key(true, 8, drawn_back(temporary, out_of_field));
-  // The suction tube, dipped into the field beside the neck.
-  const Vec3 shaft = Vec3(0.85, -0.35, 0.39).normalized(),
-             flat = (Vec3(0, -0.5, 0.87) - Vec3(0, -0.5, 0.87).dot(shaft) * shaft).normalized();
-  const ApplierPose low{neck.centre + Vec3(0, -7, 0) + 6 * shaft, flat, shaft}, outside = drawn_back(low, 26);
-  m.key(false, 0.01, outside);
-  m.key(false, 1.5, outside);
-  m.key(false, 2, low, true);
-  m.key(false, std::max(1.0, m.time(true) - 10), low, true);
-  m.key(false, 2, outside);
-  return m.csv();
-}
-
 }  // namespace
 
 std::vector<fs::path> exercise_files(const CaseFolder& folder) {
@@ -65,7 +36,7 @@ std::vector<fs::path> exercise_files(const CaseFolder& folder) {
 }
 
 void run_scenes(const CaseFolder& folder, const fs::path& project, const Options& o, Progress& progress) {
-  progress.stage("scenes", o.brain.empty() ? 5 : 6);
+  progress.stage("scenes", (o.brain.empty() ? 5 : 6) + 1);
   progress.step("choosing a clip");
   const artery::Vessel v = read_wall(folder.artery());
   if (!v.neck) throw InputError("the vessel has no neck; do the stage wall again");
@@ -102,11 +73,11 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   const auto temporary =
       std::find_if(clips.begin(), clips.end(), [&](const ClipShape& c) { return c.name == f.temporary; });
   if (temporary == clips.end()) throw InputError("the library has no clip " + f.temporary);
-  write_text(folder.path / "4_rupture_steady.csv",
-             rupture_motion(plan, plan_temporary(v, floor, *temporary), f.temporary, *v.neck));
+  const ApplierPose held = plan_temporary(v, floor, *temporary);
 
   spin_strands(f, folder, o.rehearse, notes, progress);
   if (!o.brain.empty()) try_opening(f, folder, o.rehearse, notes, progress);
+  script_rupture(folder, v, plan, held, f.temporary, o.rehearse, notes, progress);
   progress.step("writing");
   Json json;
   json["clip"] = {{"name", plan.clip.name},
