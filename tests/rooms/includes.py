@@ -19,8 +19,9 @@ FOLDERS = {
     "core/testing": {"core", "core/bus", "plugins"},
     "plugins": {"core"},
     "haptic_server": {"core", "core/bus", "core/haptics"},
-    "engine": {"core", "core/bus", "core/haptics", "haptic_server"},
-    "viewer/gateway": {"core", "core/bus"},
+    "training/store": {"core"},
+    "engine": {"core", "core/bus", "core/haptics", "haptic_server", "training/store"},
+    "viewer/gateway": {"core", "core/bus", "training/store"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include "([\w./]+)"')
 
