@@ -8,12 +8,13 @@
 #include "engine/authoring/new_plugin.h"
 #include "engine/command_line/commands.h"
 #include "engine/command_line/common_options.h"
+#include "engine/command_line/people.h"
 #include "engine/command_line/play.h"
 #include "engine/command_line/run.h"
 #include "engine/command_line/run_command_line.h"
 #include "engine/command_line/sessions.h"
 #include "engine/command_line/tool_program.h"
-#include "engine/session/live_recording.h"
+#include "training/store/data_folder.h"
 
 namespace {
 
@@ -131,6 +132,7 @@ void add_engine(Options& c) {
   command->add_option("--notice", o.notice, "file whose text viewers are shown while it is not empty");
   command->add_option("--report", o.report,
                       "folder for reports of the session, each in a folder of its own named by date and time");
+  command->add_option("--store", o.store, "training store that keeps the runs of the session's reports");
   command->add_option("--record", o.record, "session file to record into (NAME.insula), or a folder for a new one");
   insula::add_fields(*command, o.fields);
   insula::add_bands(*command, o.bands, o.band_group);
@@ -182,9 +184,10 @@ void add_play(Options& c) {
                       "folder in which the viewer's scene bundles stay, for a replay of a log");
   command->add_option("--mode", o.mode, "begin at once in this mode (default: chosen on the page)")
       ->check(CLI::IsMember({"demonstration", "practice", "test"}));
+  insula::add_data(*command, o.data);
   command->add_option("--report", o.report,
                       "folder for reports of the session, each in a folder of its own named by date and time (default: "
-                      "insula-reports in the home folder)");
+                      "insula-reports in the home folder, or reports in the folder of --data)");
   command->add_flag("--no-report", c.no_report, "write no reports");
   command->add_option(
       "--record", o.record,
@@ -194,13 +197,15 @@ void add_play(Options& c) {
   insula::add_fields(*command, o.fields);
   insula::add_bands(*command, o.bands, o.band_group);
   command->add_flag("--no-reload", c.no_reload, "do not load the scene again when one of its files is saved");
-  command->callback([&c] {
+  command->callback([&c, &o] {
     c.play.browser = !c.no_browser;
     c.play.reload = !c.no_reload;
-    if (c.no_report) c.play.report.clear();
-    else if (c.play.report.empty()) c.play.report = insula::default_report_folder();
-    if (c.no_record) c.play.record.clear();
-    else if (c.play.record.empty()) c.play.record = insula::default_session_folder();
+    const insula::training::DataFolder data = insula::training::data_folder(o.data);
+    if (c.no_report) o.report.clear();
+    else if (o.report.empty()) o.report = insula::default_report_folder(o.data);
+    if (c.no_record) o.record.clear();
+    else if (o.record.empty()) o.record = data.sessions();
+    if (!o.report.empty()) o.store = data.store();
     c.play.plugin_paths = c.plugin_paths;
     c.chosen = [&](const auto& x) { return insula::cmd_play(x, c.play); };
   });
@@ -257,6 +262,7 @@ void add_commands(Options& c) {
   add_run(c);
   add_engine(c);
   insula::add_session_commands(c);
+  insula::add_people_commands(c);
   add_replay(c);
   add_play(c);
   add_view(c);

@@ -29,6 +29,7 @@ int cmd_engine(const CommandContext& context, const EngineOptions& o) {
                       o.still,
                       o.notice,
                       o.report,
+                      o.store,
                       o.record,
                       o.bands,
                       o.band_group,

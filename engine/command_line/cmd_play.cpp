@@ -15,13 +15,16 @@
 #include "core/scene/loader.h"
 #include "core/sim/exercise.h"
 #include "engine/command_line/play.h"
+#include "engine/command_line/play_children.h"
+#include "engine/live/catalogue.h"
+#include "engine/live/exercise_choice.h"
+#include "engine/live/notice.h"
+#include "engine/live/project_folder.h"
 #include "engine/live/scene_devices.h"
 #include "engine/live/scene_reload.h"
 #include "engine/live/session_lock.h"
-#include "engine/live/session_mode.h"
 #include "engine/live/supervisor.h"
-#include "engine/session/live_recording.h"
-#include "engine/session/session_format.h"
+#include "training/store/data_folder.h"
 
 namespace fs = std::filesystem;
 
@@ -132,106 +135,40 @@ class BundleFolder {
   fs::path path_;
 };
 
-/// A motion that is named on the command line is shown at once.
-std::string mode_of(const PlayOptions& options) {
-  if (!options.mode.empty()) return options.mode;
-  if (options.motion.empty()) return std::string(name_of(SessionMode::waiting));
-  return std::string(name_of(options.motion == "none" ? SessionMode::practice : SessionMode::demonstration));
-}
-
-ChildSpec engine_child(const PlayOptions& options, const fs::path& program, const fs::path& bundles) {
-  ChildSpec engine;
-  engine.name = "engine";
-  engine.ends_session = true;
-  engine.command = {program.string()};
-  for (const fs::path& path : options.plugin_paths)
-    engine.command.insert(engine.command.end(), {"--plugin-path", path.string()});
-  engine.command.insert(engine.command.end(), {"engine", options.scene.string()});
-  if (!options.motion.empty()) engine.command.insert(engine.command.end(), {"--motion", options.motion});
-  if (!options.view) engine.command.insert(engine.command.end(), {"--mode", mode_of(options)});
-  if (!options.rate.empty()) engine.command.insert(engine.command.end(), {"--rate", options.rate});
-  if (options.seed != 0) engine.command.insert(engine.command.end(), {"--seed", std::to_string(options.seed)});
-  if (!options.keep_bundle.empty())
-    engine.command.insert(engine.command.end(), {"--bundle-dir", options.keep_bundle.string(), "--keep-bundle"});
-  else if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--bundle-dir", bundles.string()});
-  if (options.view) engine.command.emplace_back("--still");
-  if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--notice", (bundles / "notice.txt").string()});
-  if (!options.report.empty()) engine.command.insert(engine.command.end(), {"--report", options.report.string()});
-  if (!options.record.empty() && !options.view)
-    engine.command.insert(engine.command.end(), {"--record", options.record.string()});
-  if (!options.bands.empty()) engine.command.insert(engine.command.end(), {"--bands", options.bands.string()});
-  if (!options.band_group.empty()) engine.command.insert(engine.command.end(), {"--band-group", options.band_group});
-  for (const std::string& field : options.fields) engine.command.insert(engine.command.end(), {"--field", field});
-  engine.waits_for_offer = options.reload;
+std::vector<std::string> on_standby(std::vector<std::string> engine) {
+  engine.emplace_back("--standby");
   return engine;
 }
 
-ChildSpec haptic_child(const PlayOptions& options, const fs::path& folder) {
-  ChildSpec server;
-  server.name = "haptic_server";
-  server.command = {(folder / "haptic_server").string()};
-  if (!options.left.empty()) server.command.insert(server.command.end(), {"--left", options.left});
-  if (!options.right.empty()) server.command.insert(server.command.end(), {"--right", options.right});
-  return server;
-}
-
-/// Where the page finds recorded sessions: beside those that this one becomes.
-std::string session_folder(const PlayOptions& options) {
-  if (options.record.empty()) return default_session_folder().string();
-  const bool file = options.record.extension() == session::extension;
-  return fs::absolute(file ? fs::absolute(options.record).parent_path() : options.record).string();
-}
-
-ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, const SessionLock& lock,
-                        const Supervisor::Print& print) {
-  ChildSpec gateway;
-  gateway.name = "gateway";
-  const auto command = [program = (folder / "gateway").string(), listen = options.listen, hosts = options.hosts,
-                        sessions = session_folder(options)](int port) {
-    std::vector<std::string> line{program, "--listen", listen, "--port", std::to_string(port), "--sessions", sessions};
-    for (const std::string& host : hosts) line.insert(line.end(), {"--host", host});
-    return line;
-  };
-  gateway.command = command(options.port);
-  gateway.on_line = [=, &lock, first = true, browser = options.browser, view = options.view](
-                        ChildSpec& self, std::string_view line) mutable {
-    constexpr std::string_view serving = "serving ";
-    if (!line.starts_with(serving)) return true;
-    const std::string url(line.substr(serving.size()));
-    print("insula: viewer at " + url);
-    if (!view) print("insula: the instructor's page is " + url + "?role=instructor");
-    lock.announce(url);
-    const std::size_t colon = url.rfind(':');
-    if (first && colon != std::string::npos) {
-      // A restarted gateway must use the port that the pages know.
-      self.command = command(std::atoi(url.c_str() + colon + 1));
-      self.command.emplace_back("--exact-port");
-      if (browser && has_display()) open_browser(url);
-      first = false;
-    }
-    return false;
-  };
-  return gateway;
+/// Writes what exercises there are. Without a folder to write to, pages show the running one only.
+StartPageFiles start_page_files(const PlayOptions& options, const fs::path& bundles) {
+  if (bundles.empty() || options.view) return {};
+  const StartPageFiles files{bundles / "catalogue.json", bundles / "choice.json"};
+  const std::string text = catalogue_json(catalogue(project_folder()))
+                               .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return leave_notice(files.catalogue, text) ? files : StartPageFiles{};
 }
 
 }  // namespace
 
 fs::path default_scene() {
-  const fs::path scene = "scenes/training/1_sylvian_fissure.xml";
-  std::error_code error;
-  const fs::path bin = own_program().parent_path();
-  for (const fs::path& root : {fs::path("."), bin / "../../..", bin / "../share/insula"})
-    if (fs::is_regular_file(root / scene, error)) return (root / scene).lexically_normal();
-  return scene;  // the loader reports that it is missing
+  // The loader reports if it is missing.
+  return (project_folder() / "scenes/training/1_sylvian_fissure.xml").lexically_normal();
 }
 
-fs::path default_report_folder() {
+fs::path default_report_folder(const fs::path& data) {
+  if (!data.empty()) return training::data_folder(data).root / "reports";
   const char* home = std::getenv("HOME");
   return fs::absolute(home != nullptr && *home != '\0' ? fs::path(home) : fs::path(".")) / "insula-reports";
 }
 
+std::vector<fs::path> folders_of_play(const fs::path& data) {
+  return {training::data_folder(data).sessions(), default_report_folder(data)};
+}
+
 int cmd_play(const CommandContext& context, const PlayOptions& given) {
   PlayOptions options = given;
+  options.start_page = !options.view && options.scene.empty();
   if (options.scene.empty()) options.scene = default_scene();
   BusCheck bus;
   if (!scene_ok(context, options)) return 2;
@@ -247,18 +184,31 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
   const Supervisor::Print print = [&out = context.out](std::string_view line) { out << line << std::endl; };
   const BundleFolder bundles;
   const ChildSpec engine = engine_child(options, program, bundles.path());
-  std::vector<std::string> standby = engine.command;
-  standby.emplace_back("--standby");
-  SceneReload reload(options.scene, options.plugin_paths, std::move(standby),
+  SceneReload reload(options.scene, options.plugin_paths, on_standby(engine.command),
                      bundles.path().empty() ? fs::path() : bundles.path() / "notice.txt", print);
+  const StartPageFiles files = start_page_files(options, bundles.path());
+  const auto command_of = [&](const ChosenExercise& choice) {
+    return engine_child(chosen_options(options, choice), program, bundles.path()).command;
+  };
+  ExerciseChoice choice({scene_name(options.scene), person_of(options)}, files.choice, command_of,
+                        [&](const ChosenExercise& c) { reload.watch(scene_file(c.scene), on_standby(command_of(c))); });
   SupervisorSettings settings;
   settings.duration_s = options.duration_s;
   Supervisor* running = nullptr;
-  if (options.reload) settings.look = [&] { reload.look(*running); };
+  settings.look = [&] {
+    choice.look(*running);
+    if (options.reload) reload.look(*running);
+  };
   Supervisor supervisor(settings, print);
   running = &supervisor;
+  const auto serving = [&](const std::string& url, bool first) {
+    print("insula: viewer at " + url);
+    if (!options.view) print("insula: the instructor's page is " + url + "?role=instructor");
+    lock.announce(url);
+    if (first && options.browser && has_display()) open_browser(url);
+  };
   // The viewer starts first, so that it is available while the engine loads.
-  supervisor.add(gateway_child(options, folder, lock, print));
+  supervisor.add(gateway_child(options, folder, files, {serving, [&](std::string_view json) { choice.ask(json); }}));
   if (!options.view) supervisor.add(haptic_child(options, folder));
   supervisor.add(engine);
   return supervisor.run();

@@ -51,6 +51,12 @@ inline void add_fields(CLI::App& command, std::vector<std::string>& fields) {
       });
 }
 
+inline void add_data(CLI::App& command, std::filesystem::path& folder) {
+  command.add_option("--data", folder,
+                     "folder of the user's data: recordings, persons and their runs (default: insula in the "
+                     "platform's folder for it)");
+}
+
 /// choice: "auto" is allowed.
 inline void add_rate(CLI::App& command, std::string& rate, bool choice) {
   const std::string doc = choice ? "steps a second of the engine, or auto: the highest that this machine keeps "

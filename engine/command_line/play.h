@@ -26,10 +26,13 @@ struct PlayOptions {
   std::filesystem::path
       keep_bundle;               ///< folder in which the viewer's bundles are kept; empty: they are removed at the end
   std::filesystem::path report;  ///< folder for the session's reports; empty: none
+  std::filesystem::path data;    ///< folder of the user's data; empty: the platform's
+  std::filesystem::path store;   ///< training store for the session's runs; empty: none
   std::filesystem::path record;  ///< session file, or folder of a new one; empty: nothing is recorded
   std::filesystem::path bands;   ///< of `insula bands --json`, for the reports; empty: none
   std::string band_group;        ///< whose bands; empty: the only group
   std::vector<std::string> fields;                  ///< NAME=VALUE, of the recording
+  bool start_page = false;                          ///< the viewer begins with the start page
   bool reload = true;                               ///< loads the scene again when one of its files is saved
   bool view = false;                                ///< shows the scene: time stands still, no hands (insula view)
   std::vector<std::filesystem::path> plugin_paths;  ///< shared plugins, or folders of them, for the engine
@@ -41,8 +44,11 @@ int cmd_play(const CommandContext& context, const PlayOptions& options);
 /// Lists the inventory of a scene. Status 0, or 2 if the scene has errors.
 int cmd_view_list(const CommandContext& context, const std::filesystem::path& scene);
 
-/// Folder of the reports if none is given: insula-reports in the home folder, or in the current one.
-std::filesystem::path default_report_folder();
+/// Folder of the reports if none is given: `reports` in the given folder of the user's data; if that is empty too,
+/// insula-reports in the home folder, or in the current one.
+std::filesystem::path default_report_folder(const std::filesystem::path& data);
+/// The folders that `play` writes recordings and reports to if none are given.
+std::vector<std::filesystem::path> folders_of_play(const std::filesystem::path& data);
 
 /// The scene that is played if none is given. It is beside the program's installation or sources, or below the current
 /// folder.

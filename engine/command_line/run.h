@@ -43,6 +43,7 @@ struct EngineOptions {
   bool standby = false;          ///< load, print standby_line, and wait for SIGUSR1 before anything is sent on the bus
   std::filesystem::path notice;  ///< file whose text viewers show while it is not empty
   std::filesystem::path report;  ///< folder for the session's reports; empty: none
+  std::filesystem::path store;   ///< training store for the session's runs; empty: none
   std::filesystem::path record;  ///< session file, or folder of a new one; empty: none
   std::filesystem::path bands;   ///< as for run
   std::string band_group;

@@ -5,7 +5,6 @@
 #include "engine/command_line/common_options.h"
 #include "engine/command_line/play.h"
 #include "engine/command_line/sessions.h"
-#include "engine/session/live_recording.h"
 
 namespace insula {
 namespace {
@@ -88,9 +87,10 @@ void add_session(CommandLine& line) {
   forget->add_option("person", f->person, "as given by --field person=NAME")->required();
   forget->add_option("--folder", f->folders,
                      "folder that is searched; may be given several times (default: those of play)");
+  add_data(*forget, f->data);
   forget->add_flag("--list", f->list_only, "only list what would be removed");
   forget->callback([&line, f] {
-    if (f->folders.empty()) f->folders = {default_session_folder(), default_report_folder()};
+    if (f->folders.empty()) f->folders = folders_of_play(f->data);
     line.chosen = [f](const CommandContext& context) { return cmd_session_forget(context, *f); };
   });
 }

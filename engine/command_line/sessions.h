@@ -59,6 +59,7 @@ int cmd_session_export(const CommandContext& context, const ExportOptions& optio
 struct ForgetOptions {
   std::string person;
   std::vector<std::filesystem::path> folders;  ///< of sessions and of reports
+  std::filesystem::path data;                  ///< folder of the user's data; empty: the platform's
   bool list_only = false;
 };
 /// Removes all sessions and reports of a person. Status 0, also if there are none; 1 if one cannot be removed.

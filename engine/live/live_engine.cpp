@@ -480,6 +480,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
       simulation.scene().title().empty() ? options.scene.stem().string() : simulation.scene().title();
   Publisher publisher(bus, session, options.scene, bundle, {}, title);
   SessionReports reports(options.report, options.scene, motion.empty() ? "" : options.motion, options.fields);
+  reports.keep_in(options.store);
   try {
     const fs::path bands = options.bands.empty() ? bands_beside(options.scene) : options.bands;
     if (!bands.empty()) reports.compare_with(bands_for(bands, options.band_group, simulation.scene().title()));

@@ -29,6 +29,7 @@ struct LiveOptions {
   bool still = false;            ///< only show the scene: time stands still, the bundle has the inventory
   std::filesystem::path notice;  ///< file whose text viewers show over the image while it is not empty; none: nothing
   std::filesystem::path report;  ///< folder for the session's reports (session_reports.h); empty: none
+  std::filesystem::path store;   ///< training store that keeps each run that has a report; empty: none
   std::filesystem::path record;  ///< session file, or the folder of a new one (new_session_file()); empty: none
   std::filesystem::path bands;   ///< of `insula bands --json`, for the reports; empty: none
   std::string band_group;        ///< whose bands; empty: the only group

@@ -29,6 +29,13 @@ SceneReload::SceneReload(std::filesystem::path scene, std::vector<std::filesyste
   watch_.set(files());
 }
 
+void SceneReload::watch(std::filesystem::path scene, std::vector<std::string> command) {
+  scene_ = std::move(scene);
+  command_ = std::move(command);
+  waiting_ = false;
+  watch_.set(files());
+}
+
 std::vector<std::filesystem::path> SceneReload::files() const {
   std::vector<std::filesystem::path> out = scene_files(scene_);
   std::error_code ec;

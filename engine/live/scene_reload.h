@@ -20,6 +20,8 @@ class SceneReload {
   /// from which the engines read the text for viewers; empty: none.
   SceneReload(std::filesystem::path scene, std::vector<std::filesystem::path> plugins, std::vector<std::string> command,
               std::filesystem::path notice, Print print);
+  /// Another scene from now on, with the command of its engine.
+  void watch(std::filesystem::path scene, std::vector<std::string> command);
   /// Must be called repeatedly.
   void look(Supervisor& supervisor);
 

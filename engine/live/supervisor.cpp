@@ -90,6 +90,7 @@ void Supervisor::collect_offer(Child& child) {
   const auto taken = std::move(child.next);
   child.process = std::move(taken->process);
   child.process.send(SIGUSR1);
+  if (!taken->offer.command_after.empty()) child.spec.command = taken->offer.command_after;
   child.due.reset();
   child.started = now;
   child.wait_s = settings_.first_wait_s;

@@ -47,6 +47,7 @@ class Supervisor {
   /// a first one that is not ready.
   struct Offer {
     std::vector<std::string> command;
+    std::vector<std::string> command_after;  ///< starts the child again if it dies later; empty: that of the old one
     std::string ready_line;
     std::function<void(const std::vector<std::string>& lines, const ChildExit& exit)> refused;
     std::function<void()> taken;

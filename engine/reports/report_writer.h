@@ -41,6 +41,7 @@ struct RunSummary {
   std::string recording;                      ///< file that the run was recorded into; empty: none
   std::map<std::string, std::string> fields;  ///< what the person says of the session: "person", "level"
   std::string began;                          ///< local date and time of a live session; empty: none
+  std::int64_t began_ms = 0;                  ///< the same, since 1970 UTC
   double wall_seconds = 0;                    ///< of all steps
   double fresh_forces_per_s = 0;              ///< number of distinct fresh forces per simulated second of contact
   std::array<double, 2> max_force_N{};        ///< on the hands: left, right

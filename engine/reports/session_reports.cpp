@@ -14,6 +14,8 @@
 #include <utility>
 
 #include "core/base/input_error.h"
+#include "engine/reports/stored_run.h"
+#include "training/store/store.h"
 
 namespace fs = std::filesystem;
 
@@ -143,29 +145,32 @@ void SessionReports::write(const Simulation& simulation) {
   summary_.fresh_forces_per_s = fresh_forces_per_s();
   const std::tm began = fmt::localtime(began_);
   summary_.began = fmt::format("{:%Y-%m-%d %H:%M:%S}", began);
+  summary_.began_ms = 1000 * std::int64_t(began_);
   std::string name = fmt::format("{:%Y-%m-%d_%H-%M-%S}_{}", began, scene_.stem().string());
   const auto failed = [](const std::exception& e) {
     spdlog::error("a report was not written: {}. The session goes on", e.what());
   };
   wait();  // folders are created in the order of the runs
   try {
-    writing_ = std::async(std::launch::async,
-                          [root = root_, name = std::move(name), recorder = std::move(recorder_), summary = summary_,
-                           failed, done = done_, pass = done_->pass, recorded = recorded_pass_]() mutable {
-                            try {
-                              const fs::path folder = new_report_folder(root, name);
-                              summary.own_runs = own_runs(root, summary.title, person_of(summary.fields), folder);
-                              write_report(folder, recorder, summary);
-                              const fs::path page = fs::absolute(folder / "report.html");
-                              spdlog::info("report: {}", page.string());
-                              std::string review = review_message(recorded, review_of(recorder, summary));
-                              std::lock_guard lock(done->mutex);
-                              done->reviews.push_back(std::move(review));
-                              if (done->pass == pass) done->path = page.string();
-                            } catch (const std::exception& e) {
-                              failed(e);
-                            }
-                          });
+    writing_ = std::async(std::launch::async, [root = root_, name = std::move(name), recorder = std::move(recorder_),
+                                               summary = summary_, store = store_, failed, done = done_,
+                                               pass = done_->pass, recorded = recorded_pass_]() mutable {
+      try {
+        const fs::path folder = new_report_folder(root, name);
+        summary.own_runs = own_runs(root, summary.title, person_of(summary.fields), folder);
+        write_report(folder, recorder, summary);
+        const fs::path page = fs::absolute(folder / "report.html");
+        spdlog::info("report: {}", page.string());
+        if (!store.empty() && summary.exercise)
+          training::Store(store).add(stored_run(recorder, summary, page.string()));
+        std::string review = review_message(recorded, review_of(recorder, summary));
+        std::lock_guard lock(done->mutex);
+        done->reviews.push_back(std::move(review));
+        if (done->pass == pass) done->path = page.string();
+      } catch (const std::exception& e) {
+        failed(e);
+      }
+    });
   } catch (const std::system_error& e) {  // no thread is available
     failed(e);
   }

@@ -36,6 +36,8 @@ class SessionReports {
 
   /// Of the reports from now on.
   void compare_with(ReferenceBands bands) { bands_ = std::move(bands); }
+  /// Each run is also kept in this training store, which is created if it is missing. Empty: in none.
+  void keep_in(std::filesystem::path store) { store_ = std::move(store); }
   /// Takes the haptic server's messages. The report uses the largest force between two steps, and the mean rate of
   /// fresh forces over the seconds in which a hand had any.
   void hear(const insula_lcm::device_state_t& hands);
@@ -81,7 +83,7 @@ class SessionReports {
     std::array<int, 2> seconds{};                  // number of rates
   };
 
-  std::filesystem::path root_, scene_;
+  std::filesystem::path root_, scene_, store_;
   std::string motion_, recording_;
   std::map<std::string, std::string> fields_;
   ReferenceBands bands_;

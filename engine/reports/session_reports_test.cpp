@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
@@ -20,6 +21,7 @@
 #include "core/registry/registry.h"
 #include "engine/live/live_engine.h"
 #include "engine/session/session_format.h"
+#include "training/store/store.h"
 
 namespace insula {
 namespace {
@@ -89,6 +91,9 @@ class SessionReportsTest : public testing::Test {
     options.threads = 1;
     options.report = root();
     options.record = record_;
+    options.store = store_;
+    options.fields = fields_;
+    options.mode = SessionMode::practice;
     return run_live(options, registry_, bus_, stop_);
   }
   void ask(const std::string& command, const std::string& argument = "") {
@@ -135,7 +140,8 @@ class SessionReportsTest : public testing::Test {
   }
   fs::path root() const { return folder_ / "reports"; }
 
-  fs::path folder_, record_;
+  fs::path folder_, record_, store_;
+  std::map<std::string, std::string> fields_;
   Registry registry_;
   MemBus bus_;
   std::atomic<bool> stop_{false};
@@ -157,6 +163,31 @@ TEST_F(SessionReportsTest, EndsWithTheExercise) {
   EXPECT_EQ(all[0].at("exercise").at("goals").at(0).at("done"), true);
   EXPECT_EQ(all[0].at("events").back().at("kind"), "end");
   EXPECT_EQ(all[0].at("began").get<std::string>().size(), 19u);
+}
+
+TEST_F(SessionReportsTest, EachRunIsKeptInTheTrainingStore) {
+  store_ = folder_ / "training.sqlite";
+  fields_ = {{"person", "P07"}};
+  on_step_ = [this](int step) {
+    if (step == 20) ask("reset");
+  };
+  ASSERT_EQ(play(0.4, 0.3), 0);
+  const training::Store store(store_);
+  const auto runs = store.runs("P07");
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(runs[0].state, "done");
+  EXPECT_EQ(runs[1].state, "running") << "left before its end";
+  EXPECT_EQ(runs[1].title, "Waiting");
+  EXPECT_EQ(runs[1].mode, "practice");
+  EXPECT_EQ(runs[0].goals_done, 1);
+  EXPECT_EQ(runs[1].goals_done, 0);
+  EXPECT_EQ(runs[1].scene, (fs::canonical(folder_) / "press.xml").string());
+  EXPECT_NEAR(runs[0].duration_s, 0.3, 1e-6);
+  EXPECT_TRUE(fs::is_regular_file(runs[0].report));
+  const auto all = reports();
+  ASSERT_EQ(all.size(), 2u);
+  const auto metrics = all[0].at("metrics").size();
+  EXPECT_EQ(store.run(runs[1].uuid)->metrics.size(), metrics);
 }
 
 TEST_F(SessionReportsTest, AReopenedExerciseHasAnotherReport) {

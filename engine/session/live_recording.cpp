@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <ctime>
 
@@ -16,15 +15,6 @@
 
 namespace insula {
 namespace fs = std::filesystem;
-
-fs::path default_session_folder() {
-  const char* data = std::getenv("XDG_DATA_HOME");
-  const char* home = std::getenv("HOME");
-  const fs::path base = data && *data   ? fs::path(data)
-                        : home && *home ? fs::path(home) / ".local/share"
-                                        : fs::path(".");
-  return fs::absolute(base) / "insula/sessions";
-}
 
 fs::path new_session_file(const fs::path& wanted, const fs::path& scene) {
   const bool named = wanted.extension() == session::extension;

@@ -10,9 +10,6 @@
 
 namespace insula {
 
-/// The folder of recorded sessions: insula/sessions in the user's data folder (XDG_DATA_HOME, else ~/.local/share).
-std::filesystem::path default_session_folder();
-
 /// `wanted` if it ends in .insula, else a name in that folder made of date, time and the scene's name. A number is
 /// added if the file exists. Creates the folder and the empty file, so that two sessions never have the same one.
 /// Throws InputError if it cannot.

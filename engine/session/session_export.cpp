@@ -14,7 +14,7 @@
 #include "core/base/input_error.h"
 #include "core/bus/channels.h"
 #include "core/bus/codec.h"
-#include "engine/reports/csv.h"
+#include "engine/reports/table_file.h"
 #include "engine/session/session_format.h"
 
 namespace insula {
@@ -23,53 +23,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A table on its way into a file, row by row. A value is a number, a text or null.
-class Table {
- public:
-  Table(const fs::path& folder, const std::string& name, const std::string& format, std::vector<std::string> columns)
-      : file_(folder / (name + "." + format)),
-        out_(file_, std::ios::binary | std::ios::trunc),
-        json_(format == "json"),
-        columns_(std::move(columns)) {
-    if (json_) out_ << "[";
-    else
-      for (std::size_t i = 0; i < columns_.size(); ++i) out_ << (i ? "," : "") << csv_text(columns_[i]);
-  }
-  void row(const std::vector<Json>& values) {
-    if (json_) {
-      Json object;
-      for (std::size_t i = 0; i < values.size(); ++i) object[columns_[i]] = values[i];
-      out_ << (rows_++ ? ",\n " : "\n ") << object.dump(-1, ' ', false, Json::error_handler_t::replace);
-      return;
-    }
-    out_ << "\n";
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      out_ << (i ? "," : "");
-      if (values[i].is_string()) out_ << csv_text(values[i].get<std::string>());
-      else if (!values[i].is_null()) out_ << values[i].dump();
-    }
-  }
-  fs::path close() {
-    out_ << (json_ ? "\n]\n" : "\n");
-    out_.close();
-    if (!out_) throw InputError(file_.string() + ": cannot be written: " + std::strerror(errno));
-    return file_;
-  }
-
- private:
-  fs::path file_;
-  std::ofstream out_;
-  bool json_;
-  std::vector<std::string> columns_;
-  std::size_t rows_ = 0;
-};
-
 constexpr const char* hand_names[] = {"left", "right"};
 
 fs::path export_hands(SessionReader& session, const fs::path& folder, const std::string& format) {
-  Table table(folder, "hands", format,
-              {"time_s", "hand", "connected", "device", "px_m", "py_m", "pz_m", "qw", "qx", "qy", "qz", "button1",
-               "button2", "fx_N", "fy_N", "fz_N"});
+  TableFile table(folder, "hands", format,
+                  {"time_s", "hand", "connected", "device", "px_m", "py_m", "pz_m", "qw", "qx", "qy", "qz", "button1",
+                   "button2", "fx_N", "fy_N", "fz_N"});
   if (const auto channel = session.container().channel(channel::device_state)) {
     insula_lcm::device_state_t m{};
     std::string why;
@@ -90,7 +49,7 @@ fs::path export_servo(SessionReader& session, const fs::path& folder, const std:
   for (const char* hand : hand_names)
     for (const char* number : {"px_m", "py_m", "pz_m", "qw", "qx", "qy", "qz", "fx_N", "fy_N", "fz_N"})
       columns.push_back(fmt::format("{}_{}", hand, number));
-  Table table(folder, "servo", format, columns);
+  TableFile table(folder, "servo", format, columns);
   std::vector<Json> row(columns.size());
   session.ticks([&](double received_s, const insula_lcm::servo_ticks_t& m) {
     for (int k = 0; k < m.ticks; ++k) {
@@ -110,7 +69,7 @@ fs::path export_channels(SessionReader& session, const fs::path& folder, const s
   const auto& described = session.container().descriptions();
   if (const auto names = described.find(session::channel_names); names != described.end())
     for (const auto& [number, name] : names->second) columns.push_back(name);
-  Table table(folder, "channels", format, columns);
+  TableFile table(folder, "channels", format, columns);
   if (const auto channel = session.container().channel(session::channels_topic))
     session.container().read({*channel}, 0, UINT64_MAX, [&](const McapReader::Message& message) {
       const Json values = Json::parse(message.data.begin(), message.data.end(), nullptr, false);
@@ -124,8 +83,9 @@ fs::path export_channels(SessionReader& session, const fs::path& folder, const s
 }
 
 fs::path export_metrics(SessionReader& session, const fs::path& folder, const std::string& format) {
-  Table table(folder, "metrics", format,
-              {"number", "pass", "time_s", "mode", "state", "last_of_pass", "id", "hand", "value", "unit", "better"});
+  TableFile table(
+      folder, "metrics", format,
+      {"number", "pass", "time_s", "mode", "state", "last_of_pass", "id", "hand", "value", "unit", "better"});
   session.metrics([&](const SessionReader::Metrics& m) {
     for (const auto& v : m.values)
       table.row({m.number, m.pass, m.time_s, m.mode, m.state, m.last_of_pass, v.id, v.hand, v.value, v.unit, v.better});
@@ -135,7 +95,7 @@ fs::path export_metrics(SessionReader& session, const fs::path& folder, const st
 }
 
 fs::path export_events(SessionReader& session, const fs::path& folder, const std::string& format) {
-  Table table(folder, "events", format, {"time_s", "kind", "id", "text", "value", "hand"});
+  TableFile table(folder, "events", format, {"time_s", "kind", "id", "text", "value", "hand"});
   session.events([&](const insula_lcm::sim_event_t& e) {
     table.row(
         {e.sim_time_s, e.kind, e.id, e.text, e.value, e.hand == 0 || e.hand == 1 ? Json(hand_names[e.hand]) : Json()});

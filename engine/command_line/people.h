@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The commands for persons and what they have done: people add, list, export, forget, backup.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/command_line/commands.h"
+#include "engine/command_line/run_command_line.h"
+#include "training/store/records.h"
+
+namespace insula {
+
+struct PeopleOptions {
+  std::filesystem::path data;                  ///< folder of the user's data; empty: the platform's
+  training::Person person;                     ///< add
+  std::string pseudonym;                       ///< forget; export: only this person, empty: all
+  std::filesystem::path output;                ///< export: folder; backup: file
+  std::string format = "csv";                  ///< export: "csv" or "json"
+  std::vector<std::filesystem::path> folders;  ///< forget: of recordings and reports; empty: those of play
+  bool json = false;                           ///< list
+};
+
+/// Status 0; 2 if the pseudonym is in use or a field is wrong.
+int cmd_people_add(const CommandContext& context, const PeopleOptions& options);
+/// With the number of runs and the day of the last one.
+int cmd_people_list(const CommandContext& context, const PeopleOptions& options);
+/// Writes persons, runs, metrics and faults as one file each. Status 0; 1 if one cannot be written; 2 if the person is
+/// not known.
+int cmd_people_export(const CommandContext& context, const PeopleOptions& options);
+/// Removes a person with all runs, recordings and reports. Status 0, also if there is nothing; 1 if a file cannot be
+/// removed.
+int cmd_people_forget(const CommandContext& context, const PeopleOptions& options);
+/// Copies the store into one file, also while it is in use.
+int cmd_people_backup(const CommandContext& context, const PeopleOptions& options);
+
+/// Adds all of these commands to the program.
+void add_people_commands(CommandLine& line);
+
+}  // namespace insula

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command lines of the commands for persons.
+#include <memory>
+
+#include "engine/command_line/common_options.h"
+#include "engine/command_line/people.h"
+
+namespace insula {
+namespace {
+
+CLI::IsMember one_of(const auto& names) { return CLI::IsMember(std::vector<std::string>(names.begin(), names.end())); }
+
+}  // namespace
+
+void add_people_commands(CommandLine& line) {
+  auto* people = line.app.add_subcommand("people", "persons who train, and what they have done");
+  people->require_subcommand(1);
+  const auto o = std::make_shared<PeopleOptions>();
+  const auto add = [&](const char* name, const char* doc, int (*run)(const CommandContext&, const PeopleOptions&)) {
+    auto* command = people->add_subcommand(name, doc);
+    add_data(*command, o->data);
+    command->callback(
+        [&line, o, run] { line.chosen = [o, run](const CommandContext& context) { return run(context, *o); }; });
+    return command;
+  };
+  auto* added = add("add", "a person, under a pseudonym", cmd_people_add);
+  added->add_option("pseudonym", o->person.pseudonym, "1 to 40 characters")->required();
+  added->add_option("--role", o->person.role, "what the person is")
+      ->check(one_of(training::roles))
+      ->capture_default_str();
+  added->add_option("--handedness", o->person.handedness, "the better hand")
+      ->check(one_of(training::handedness_names))
+      ->capture_default_str();
+  added->add_option("--year", o->person.year, "year of training; 0: not said")->capture_default_str();
+
+  add("list", "all persons, with the number of their runs", cmd_people_list)->add_flag("--json", o->json, "as JSON");
+
+  auto* exported = add("export", "tables of persons, runs, metrics and faults", cmd_people_export);
+  exported->add_option("-o,--output", o->output, "folder to write to")->required();
+  exported->add_option("--person", o->pseudonym, "only this one (default: all, and guests)");
+  exported->add_option("--format", o->format, "one file for each table")
+      ->check(CLI::IsMember({"csv", "json"}))
+      ->capture_default_str();
+
+  auto* forget = add("forget", "remove a person with all runs, recordings and reports", cmd_people_forget);
+  forget->add_option("pseudonym", o->pseudonym, "of the person")->required();
+  forget->add_option("--folder", o->folders,
+                     "folder that is searched for recordings and reports; may be given several times (default: those "
+                     "of play)");
+
+  add("backup", "copy the training store into one file, also while it is in use", cmd_people_backup)
+      ->add_option("file", o->output, "file to write")
+      ->required();
+}
+
+}  // namespace insula

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The processes of `insula play`: how each is started, and what the gateway says on its standard output.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "engine/command_line/play.h"
+#include "engine/live/exercise_choice.h"
+#include "engine/live/supervisor.h"
+
+namespace insula {
+
+/// Files by which the start page learns what there is and what runs; empty: it has none.
+struct StartPageFiles {
+  std::filesystem::path catalogue;  ///< catalogue_json()
+  std::filesystem::path choice;     ///< state_json()
+};
+
+/// What is done with the gateway's lines.
+struct GatewayLines {
+  std::function<void(const std::string& url, bool first)> serving;  ///< first: not after a restart
+  std::function<void(std::string_view json)> chosen;                ///< ExerciseChoice::ask()
+};
+
+ChildSpec engine_child(const PlayOptions& options, const std::filesystem::path& program,
+                       const std::filesystem::path& bundles);
+ChildSpec haptic_child(const PlayOptions& options, const std::filesystem::path& folder);
+ChildSpec gateway_child(const PlayOptions& options, const std::filesystem::path& folder, const StartPageFiles& files,
+                        const GatewayLines& lines);
+
+/// The options for another exercise or person. A motion and bands belong to the first scene, and the mode is chosen on
+/// the page.
+PlayOptions chosen_options(const PlayOptions& first, const ChosenExercise& choice);
+/// Of the session's fields; empty: a guest.
+std::string person_of(const PlayOptions& options);
+
+}  // namespace insula

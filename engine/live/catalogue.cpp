@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/live/catalogue.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/xml/document.h"
+
+namespace insula {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t most_scene_bytes = 1u << 20;
+constexpr std::size_t most_scenes = 2000;
+constexpr const char* groups[] = {"skills", "training", "cases"};
+
+std::string value_of(const Element& element, std::string_view name) {
+  const Attribute* a = element.find(name);
+  return a ? a->value : std::string();
+}
+
+/// Title and text, if the file is a scene with an exercise.
+std::optional<CatalogueEntry> read(const fs::path& file) {
+  std::string text;
+  if (!read_text_file(file.string(), most_scene_bytes, text).empty()) return std::nullopt;
+  Diagnostics ignored;
+  const Document document = parse_document(text, file.string(), ignored);
+  if (!document.root || document.root->name != "scene") return std::nullopt;
+  for (const auto& child : document.root->children) {
+    if (child->name != "exercise") continue;
+    CatalogueEntry out;
+    out.title = value_of(*document.root, "title");
+    if (out.title.empty()) out.title = value_of(*child, "title");
+    out.text = value_of(*child, "text");
+    return out;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<CatalogueEntry> catalogue(const fs::path& folder) {
+  std::vector<CatalogueEntry> out;
+  for (const char* group : groups) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (fs::recursive_directory_iterator it(folder / "scenes" / group, error), end; !error && it != end;
+         it.increment(error))
+      if (it->path().extension() == ".xml" && files.size() < most_scenes) files.push_back(it->path());
+    std::sort(files.begin(), files.end());
+    for (const fs::path& file : files) {
+      auto entry = read(file);
+      if (!entry) continue;
+      entry->scene = file.lexically_relative(folder).generic_string();
+      entry->group = group;
+      const fs::path picture = fs::absolute(fs::path(file).replace_extension(".jpg"));
+      if (fs::is_regular_file(picture, error)) entry->picture = picture.string();
+      out.push_back(std::move(*entry));
+    }
+  }
+  return out;
+}
+
+nlohmann::ordered_json catalogue_json(const std::vector<CatalogueEntry>& entries) {
+  auto out = nlohmann::ordered_json::array();
+  for (const CatalogueEntry& e : entries)
+    out.push_back(
+        {{"scene", e.scene}, {"group", e.group}, {"title", e.title}, {"text", e.text}, {"picture", e.picture}});
+  return out;
+}
+
+}  // namespace insula

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The exercises that the start page offers: the scenes of the project's folder that have an exercise.
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace insula {
+
+struct CatalogueEntry {
+  std::string scene;    ///< name of the file (project_folder.h)
+  std::string group;    ///< "skills", "training" or "cases"
+  std::string title;    ///< of the scene
+  std::string text;     ///< what is to be done
+  std::string picture;  ///< file beside the scene, NAME.jpg; empty: there is none
+};
+
+/// All exercises below folder/scenes: first skills, then training, then cases, each in the order of their files' names.
+/// A file that cannot be read is left out, since a start page shows what works. Only titles and texts are read, so a
+/// folder of hundreds takes no time.
+std::vector<CatalogueEntry> catalogue(const std::filesystem::path& folder);
+nlohmann::ordered_json catalogue_json(const std::vector<CatalogueEntry>& entries);
+
+}  // namespace insula

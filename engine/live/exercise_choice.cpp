@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/live/exercise_choice.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/command_line/run.h"
+#include "engine/live/notice.h"
+
+namespace insula {
+
+std::string state_json(const ChosenExercise& choice, const char* state, const std::string& text) {
+  const nlohmann::ordered_json json{
+      {"scene", choice.scene}, {"person", choice.person}, {"state", state}, {"text", text}};
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+ExerciseChoice::ExerciseChoice(ChosenExercise present, std::filesystem::path state, Command command,
+                               std::function<void(const ChosenExercise&)> taken)
+    : present_(std::move(present)), state_(std::move(state)), command_(std::move(command)), taken_(std::move(taken)) {
+  tell(present_, "running");
+}
+
+void ExerciseChoice::ask(std::string_view text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object()) return;
+  const auto scene = json.find("scene"), person = json.find("person");
+  if (scene == json.end() || !scene->is_string() || person == json.end() || !person->is_string()) return;
+  wanted_ = {scene->get<std::string>(), person->get<std::string>()};
+  waiting_ = true;
+  tell(wanted_, "loading");
+}
+
+void ExerciseChoice::look(Supervisor& supervisor) {
+  if (!waiting_) return;
+  Supervisor::Offer offer;
+  offer.command_after = command_(wanted_);
+  offer.command = offer.command_after;
+  offer.command.emplace_back("--standby");
+  offer.ready_line = standby_line;
+  offer.refused = [this, choice = wanted_](const auto& lines, const ChildExit& exit) { refused(choice, lines, exit); };
+  offer.taken = [this, choice = wanted_] {
+    present_ = choice;
+    tell(present_, "running");
+    taken_(present_);
+  };
+  waiting_ = !supervisor.offer("engine", std::move(offer));
+}
+
+void ExerciseChoice::refused(const ChosenExercise& choice, const std::vector<std::string>& lines,
+                             const ChildExit& exit) {
+  std::string text;
+  for (const std::string& line : lines)
+    if (line.find("error: ") != std::string::npos) text += line + "\n";
+  tell(choice, "refused", text.empty() ? fmt::format("the engine that loaded it {}", exit.text()) : text);
+}
+
+void ExerciseChoice::tell(const ChosenExercise& choice, const char* state, const std::string& text) {
+  if (!state_.empty()) leave_notice(state_, state_json(choice, state, text));
+}
+
+}  // namespace insula

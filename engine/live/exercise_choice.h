@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Another exercise, or another person, while a session runs. The start page asks for it through the gateway. A second
+// engine loads the scene beside the first one and takes over when it is ready, as after a scene was saved.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/live/supervisor.h"
+
+namespace insula {
+
+struct ChosenExercise {
+  std::string scene;   ///< name (project_folder.h)
+  std::string person;  ///< pseudonym; empty: a guest
+};
+
+class ExerciseChoice {
+ public:
+  /// The command line of the engine for a choice.
+  using Command = std::function<std::vector<std::string>(const ChosenExercise&)>;
+  /// state: file that tells pages how far it is (state_json()); empty: they are not told. taken: called when the
+  /// engine of a choice has taken over.
+  ExerciseChoice(ChosenExercise present, std::filesystem::path state, Command command,
+                 std::function<void(const ChosenExercise&)> taken);
+
+  /// A request as JSON: {"scene", "person"}. Anything else is ignored, since a page may send anything.
+  void ask(std::string_view json);
+  /// Must be called repeatedly.
+  void look(Supervisor& supervisor);
+
+ private:
+  void tell(const ChosenExercise& choice, const char* state, const std::string& text = {});
+  void refused(const ChosenExercise& choice, const std::vector<std::string>& lines, const ChildExit& exit);
+
+  ChosenExercise present_, wanted_;
+  std::filesystem::path state_;
+  Command command_;
+  std::function<void(const ChosenExercise&)> taken_;
+  bool waiting_ = false;  ///< wanted_ has not been offered yet
+};
+
+/// {"scene", "person", "state": "running" | "loading" | "refused", "text"}.
+std::string state_json(const ChosenExercise& choice, const char* state, const std::string& text);
+
+}  // namespace insula

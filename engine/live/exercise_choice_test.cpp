@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Another exercise in a running session, and the list of exercises that pages choose from.
+#include "engine/live/exercise_choice.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "engine/command_line/run.h"
+#include "engine/live/catalogue.h"
+#include "engine/live/project_folder.h"
+
+namespace insula {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class ExerciseChoiceTest : public testing::Test {
+ protected:
+  ExerciseChoiceTest() {
+    std::string name = (fs::temp_directory_path() / "insula_choice_XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~ExerciseChoiceTest() override { fs::remove_all(folder_); }
+  json state() const {
+    std::ifstream in(folder_ / "choice.json");
+    return json::parse(in);
+  }
+
+  fs::path folder_;
+};
+
+/// Two "engines": shells that print the line, and one that is killed after it has taken over.
+TEST_F(ExerciseChoiceTest, TakesOverTellsPagesAndSurvivesTheDeathOfTheNewEngine) {
+  std::vector<std::string> lines;
+  const fs::path died = folder_ / "died";
+  const auto command = [&](const ChosenExercise& c) {
+    const std::string dies = "[ -e " + died.string() + " ] || { touch " + died.string() + "; exit 9; }; ";
+    return std::vector<std::string>{"/bin/sh", "-c",
+                                    std::string("echo '") + standby_line +
+                                        "'; trap 'trap - USR1; echo go' USR1; echo now " + c.scene + " " + c.person +
+                                        "; sleep 0.5; " + dies + "while :; do sleep 0.01; done"};
+  };
+  std::vector<std::string> taken;
+  ExerciseChoice choice({"a.xml", ""}, folder_ / "choice.json", command,
+                        [&](const ChosenExercise& c) { taken.push_back(c.scene + " " + c.person); });
+  EXPECT_EQ(state()["state"], "running");
+  EXPECT_EQ(state()["scene"], "a.xml");
+  for (const char* bad : {"", "[]", R"({"scene":"b.xml"})", R"({"scene":1,"person":""})"}) choice.ask(bad);
+  EXPECT_EQ(state()["scene"], "a.xml") << "what is no request changes nothing";
+
+  Supervisor* running = nullptr;
+  SupervisorSettings settings;
+  settings.look_s = 0.01, settings.duration_s = 3, settings.first_wait_s = 0.05;
+  bool asked = false;
+  settings.look = [&] {
+    if (!asked) {
+      asked = true;
+      choice.ask(R"({"scene":"b.xml","person":"P07"})");
+      EXPECT_EQ(state()["state"], "loading");
+    }
+    choice.look(*running);
+  };
+  Supervisor supervisor(settings, [&](std::string_view line) { lines.emplace_back(line); });
+  running = &supervisor;
+  ChildSpec engine;
+  engine.name = "engine";
+  engine.command = {"/bin/sh", "-c", "while :; do sleep 0.01; done"};
+  supervisor.add(engine);
+  EXPECT_EQ(supervisor.run(), 0);
+  EXPECT_EQ(taken, std::vector<std::string>{"b.xml P07"});
+  EXPECT_EQ(state()["state"], "running");
+  EXPECT_EQ(state()["person"], "P07");
+  EXPECT_GE(std::count(lines.begin(), lines.end(), "[engine] now b.xml P07"), 2)
+      << "the engine that is started again has the chosen exercise";
+}
+
+TEST_F(ExerciseChoiceTest, ARefusedSceneLeavesTheOldOneAndSaysWhy) {
+  ExerciseChoice choice(
+      {"a.xml", ""}, folder_ / "choice.json",
+      [](const ChosenExercise&) {
+        return std::vector<std::string>{"/bin/sh", "-c", "echo 'b.xml:1:2: error: wrong'; exit 2"};
+      },
+      [](const ChosenExercise&) { FAIL() << "it was not taken"; });
+  Supervisor* running = nullptr;
+  SupervisorSettings settings;
+  settings.look_s = 0.01, settings.duration_s = 0.6;
+  bool asked = false;
+  settings.look = [&] {
+    if (!std::exchange(asked, true)) choice.ask(R"({"scene":"b.xml","person":""})");
+    choice.look(*running);
+  };
+  Supervisor supervisor(settings, [](std::string_view) {});
+  running = &supervisor;
+  ChildSpec engine;
+  engine.name = "engine";
+  engine.command = {"/bin/sh", "-c", "exec sleep 1000"};
+  supervisor.add(engine);
+  EXPECT_EQ(supervisor.run(), 0);
+  EXPECT_EQ(state()["state"], "refused");
+  EXPECT_EQ(state()["text"], "b.xml:1:2: error: wrong\n");
+}
+
+TEST_F(ExerciseChoiceTest, TheCatalogueHasScenesWithAnExercise) {
+  const auto write = [&](const std::string& name, const std::string& text) {
+    fs::create_directories((folder_ / name).parent_path());
+    std::ofstream(folder_ / name) << text;
+  };
+  write("scenes/training/2_b.xml", R"(<scene title="B"><exercise id="e" text="Do &lt;it&gt;"/></scene>)");
+  write("scenes/training/2_b.jpg", "picture");
+  write("scenes/training/1_a.xml", R"(<scene><exercise id="e" title="A"/></scene>)");
+  write("scenes/training/motion.csv", "");
+  write("scenes/training/broken.xml", "<scene><exercise");
+  write("scenes/parts/c.xml", R"(<part><exercise id="e"/></part>)");
+  write("scenes/cases/mine/3_c.xml", R"(<scene title="C"><exercise id="e"/></scene>)");
+  write("scenes/cases/bench.xml", R"(<scene title="No exercise"/>)");
+  const auto found = catalogue(folder_);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].scene, "scenes/training/1_a.xml");
+  EXPECT_EQ(found[0].title, "A");
+  EXPECT_EQ(found[0].picture, "");
+  EXPECT_EQ(found[1].text, "Do <it>");
+  EXPECT_EQ(found[1].picture, (folder_ / "scenes/training/2_b.jpg").string());
+  EXPECT_EQ(found[2].group, "cases");
+  EXPECT_TRUE(catalogue(folder_ / "nowhere").empty());
+}
+
+TEST_F(ExerciseChoiceTest, SceneNamesAreThoseBelowTheProject) {
+  EXPECT_EQ(scene_name("scenes/training/../training/3_clipping.xml"), "scenes/training/3_clipping.xml");
+  EXPECT_EQ(scene_name(fs::absolute("scenes/training/3_clipping.xml")), "scenes/training/3_clipping.xml");
+  EXPECT_EQ(scene_name("/elsewhere/x.xml"), "/elsewhere/x.xml");
+  EXPECT_EQ(scene_file("/elsewhere/x.xml"), "/elsewhere/x.xml");
+  EXPECT_TRUE(fs::is_regular_file(scene_file("scenes/training/3_clipping.xml")));
+}
+
+}  // namespace
+}  // namespace insula
