@@ -24,12 +24,17 @@ struct Gateway::Impl {
   Impl(Bus& bus, Options o)
       : options(std::move(o)),
         hosts(options.hosts),
+        page{options.page, options.start},
         sessions(options.sessions, options.session_files),
+        training(
+            options.training, options.choose ? options.choose : [](const std::string&) {}),
         hub(bus, [this](std::function<void()> f) { asio::post(io, std::move(f)); }) {}
 
   Options options;
   AllowedHosts hosts;
+  PageFolder page;
   Sessions sessions;
+  TrainingApi training;
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
   asio::steady_timer retry{io};
@@ -73,7 +78,7 @@ void Gateway::Impl::accept() {
   acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
     if (stopping) return;
     if (!error) {
-      std::make_shared<HttpSession>(std::move(socket), hub, hosts, options.page, sessions)->start();
+      std::make_shared<HttpSession>(std::move(socket), hub, hosts, page, sessions, training)->start();
       return accept();
     }
     // Out of file descriptors, most likely: wait for some to come back instead of spinning.

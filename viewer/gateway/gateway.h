@@ -4,11 +4,13 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "core/bus/bus.h"
+#include "viewer/gateway/training_api.h"
 
 namespace insula::gateway {
 
@@ -18,6 +20,9 @@ struct Options {
   int more_ports = 20;                               ///< number of following ports that are tried if this one is busy
   std::vector<std::string> hosts;                    ///< names, besides its addresses, by which pages may address it
   std::filesystem::path page;                        ///< folder with index.html; empty: a note instead of the page
+  bool start = false;                                ///< "/" is the start page, else that of the exercise
+  TrainingApi::Files training;                       ///< what the start page shows
+  std::function<void(const std::string&)> choose;    ///< gets a chosen exercise (TrainingApi)
   std::filesystem::path sessions;                    ///< folder of recorded sessions to offer; empty: none
   std::vector<std::filesystem::path> session_files;  ///< further ones
 };

@@ -254,6 +254,17 @@ TEST_F(GatewayTest, OffersRecordedSessions) {
   EXPECT_EQ(gateway_->sessions_query(), "session=given");
 }
 
+TEST_F(GatewayTest, AnswersTheStartPageButNoForeignSite) {
+  EXPECT_EQ(nlohmann::json::parse(get("/api/exercises").body()), nlohmann::json::array());
+  EXPECT_EQ(get("/api").result_int(), 404U);
+  EXPECT_EQ(get("/api/people/x").result_int(), 404U);
+  EXPECT_EQ(get("/api/picture?scene=x").result_int(), 404U);
+  const std::pair<std::string, std::string> foreign{"Origin", "http://elsewhere.example"};
+  EXPECT_EQ(get("/api/choose", http::verb::post, {foreign}, R"({"scene":"x","person":""})").result_int(), 403U);
+  EXPECT_EQ(get("/api/choose", http::verb::post, {}, R"({"scene":"x","person":""})").result_int(), 404U);
+  EXPECT_EQ(get("/api/choose", http::verb::put, {}, "{}").result_int(), 405U);
+}
+
 TEST_F(GatewayTest, GivesPartsOfARecording) {
   const auto part = [&](const char* range) { return get("/sessions/given", http::verb::get, {{"Range", range}}); };
   const Response middle = part("bytes=1-3");

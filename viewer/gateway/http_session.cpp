@@ -43,8 +43,8 @@ bool same_site(const http::request<http::string_body>& request) {
 }  // namespace
 
 HttpSession::HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const AllowedHosts& hosts,
-                         const std::filesystem::path& page, const Sessions& sessions)
-    : stream_(std::move(socket)), hub_(hub), hosts_(hosts), page_(page), sessions_(sessions) {}
+                         const PageFolder& page, const Sessions& sessions, TrainingApi& training)
+    : stream_(std::move(socket)), hub_(hub), hosts_(hosts), page_(page), sessions_(sessions), training_(training) {}
 
 void HttpSession::read() {
   parser_.emplace();
@@ -112,13 +112,40 @@ void HttpSession::answer_session(const Request& request, const std::vector<std::
   send_text(request, http::status::ok, "application/json", "{}\n");
 }
 
+/// /api/NAME. Runs are a person's data, and another exercise changes what the hands feel: only for pages on this
+/// machine, and only from our own site where something changes.
+void HttpSession::answer_training(const Request& request, const std::vector<std::string>& parts) {
+  const auto refuse = [&](http::status status, const char* why) {
+    send_text(request, status, "application/json", fmt::format("{{\"error\": \"{}\"}}\n", why));
+  };
+  if (!from_this_machine()) return refuse(http::status::forbidden, "only for pages on this machine");
+  if (parts.size() != 2) return refuse(http::status::not_found, "not found");
+  const std::string_view target = view(request.target());
+  const std::size_t mark = target.find('?');
+  const std::string_view query = mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
+  if (request.method() == http::verb::post) {
+    if (!same_site(request)) return refuse(http::status::forbidden, "foreign origin");
+    const TrainingApi::Answer answer = training_.post(parts[1], request.body());
+    return send_text(request, http::status(answer.status), "application/json", answer.json);
+  }
+  if (parts[1] == "picture") {
+    const fs::path file = training_.picture(query_value(query, "scene"));
+    return file.empty() ? refuse(http::status::not_found, "no picture") : send_file(request, file, "no-cache");
+  }
+  const TrainingApi::Answer answer = training_.get(parts[1], query);
+  send_text(request, http::status(answer.status), "application/json", answer.json);
+}
+
 void HttpSession::answer(const Request& request) {
   auto parts = split_target(view(request.target()));
   const bool session = parts && parts->front() == "sessions";
+  const bool training = parts && parts->front() == "api";
+  if (training && request.method() == http::verb::post) return answer_training(request, *parts);
   if (session && request.method() == http::verb::put) return answer_session(request, *parts);
   if (request.method() != http::verb::get && request.method() != http::verb::head)
     return send_text(request, http::status::method_not_allowed, "text/plain", "only GET and HEAD\n");
   if (session) return answer_session(request, *parts);
+  if (training) return answer_training(request, *parts);
   const auto not_found = [&] { send_text(request, http::status::not_found, "text/plain", "not found\n"); };
   if (!parts) return not_found();
   if (*parts == std::vector<std::string>{"healthz"})
@@ -128,8 +155,9 @@ void HttpSession::answer(const Request& request) {
     const auto file = hub_.bundle().find((*parts)[1], {parts->begin() + 2, parts->end()});
     return file ? send_file(request, *file, "no-store") : not_found();
   }
-  if (parts->back().empty()) parts->back() = "index.html";
-  const auto file = page_.empty() ? std::nullopt : file_below(page_, *parts);
+  // A query belongs to the exercise's page: "/?role=instructor".
+  if (parts->back().empty()) parts->back() = page_.start && request.target() == "/" ? "start.html" : "index.html";
+  const auto file = page_.folder.empty() ? std::nullopt : file_below(page_.folder, *parts);
   if (file) {
     // Built assets carry a hash in their name; everything else must be asked for again.
     const bool hashed = parts->front() == "assets";
@@ -140,7 +168,7 @@ void HttpSession::answer(const Request& request) {
     const bool packed = accepts_gzip(view(request[http::field::accept_encoding])) && fs::is_regular_file(copy, error);
     return send_file(request, packed ? fs::path(copy) : *file, caching, packed);
   }
-  if (page_.empty() && *parts == std::vector<std::string>{"index.html"})
+  if (page_.folder.empty() && parts->size() == 1 && parts->back().ends_with(".html"))
     return send_text(request, http::status::service_unavailable, "text/html; charset=utf-8", std::string(not_built));
   not_found();
 }

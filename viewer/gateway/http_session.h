@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One HTTP connection: the page, the scene bundle, recorded sessions, /healthz, and the upgrade to a WebSocket at /ws.
+// One HTTP connection: the pages, the scene bundle, recorded sessions, what the start page asks for, /healthz, and the
+// upgrade to a WebSocket at /ws.
 #pragma once
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -10,16 +11,23 @@
 #include "viewer/gateway/access.h"
 #include "viewer/gateway/hub.h"
 #include "viewer/gateway/sessions.h"
+#include "viewer/gateway/training_api.h"
 
 namespace insula::gateway {
 
 namespace beast = boost::beast;
 namespace http = beast::http;
 
+/// The built page.
+struct PageFolder {
+  std::filesystem::path folder;  ///< empty: it is not built
+  bool start = false;            ///< "/" is the start page, else that of the exercise
+};
+
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const AllowedHosts& hosts,
-              const std::filesystem::path& page, const Sessions& sessions);
+  HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const AllowedHosts& hosts, const PageFolder& page,
+              const Sessions& sessions, TrainingApi& training);
   void start() { read(); }
 
  private:
@@ -29,6 +37,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   bool refuse_foreign(const Request& request);
   void upgrade(const Request& request);
   void answer(const Request& request);
+  void answer_training(const Request& request, const std::vector<std::string>& parts);
   void answer_session(const Request& request, const std::vector<std::string>& parts);
   bool from_this_machine() const;
   void send_text(const Request& request, http::status status, std::string_view type, std::string body);
@@ -43,8 +52,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   beast::tcp_stream stream_;
   Hub& hub_;
   const AllowedHosts& hosts_;
-  const std::filesystem::path& page_;
+  const PageFolder& page_;
   const Sessions& sessions_;
+  TrainingApi& training_;
   beast::flat_buffer in_;
   std::optional<http::request_parser<http::string_body>> parser_;
 };

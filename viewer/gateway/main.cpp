@@ -25,7 +25,16 @@ int main(int argc, char** argv) {
                  "a name under which other machines' pages may ask for it; may be given several times");
   app.add_option("--sessions", options.sessions, "folder of recorded sessions that pages of this machine may see");
   app.add_option("--session", options.session_files, "a recorded session, in addition; may be given several times");
+  app.add_option("--store", options.training.store, "training store: persons and their runs");
+  app.add_option("--catalogue", options.training.catalogue, "JSON of the exercises that pages may choose from");
+  app.add_option("--choice", options.training.choice, "JSON of the running exercise");
+  app.add_flag("--start", options.start, "begin with the start page");
   CLI11_PARSE(app, argc, argv);
+  // The program that started this one reads it.
+  options.choose = [](const std::string& json) {
+    fmt::print("choose {}\n", json);
+    std::fflush(stdout);
+  };
   if (exact) options.more_ports = 0;
   if (options.page.empty()) options.page = insula::gateway::find_page();
 

@@ -19,6 +19,8 @@ int hex(char c) {
   return -1;
 }
 
+}  // namespace
+
 std::optional<std::string> percent_decoded(std::string_view s) {
   std::string out;
   for (std::size_t i = 0; i < s.size(); ++i) {
@@ -27,15 +29,12 @@ std::optional<std::string> percent_decoded(std::string_view s) {
       if (i + 2 >= s.size() || hex(s[i + 1]) < 0 || hex(s[i + 2]) < 0) return std::nullopt;
       c = char(hex(s[i + 1]) * 16 + hex(s[i + 2]));
       i += 2;
-      if (c == '/') return std::nullopt;  // an escaped separator is never meant well
     }
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == '\\') return std::nullopt;
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return std::nullopt;
     out += c;
   }
   return out;
 }
-
-}  // namespace
 
 std::optional<std::vector<std::string>> split_target(std::string_view target) {
   target = target.substr(0, target.find_first_of("?#"));
@@ -45,6 +44,8 @@ std::optional<std::vector<std::string>> split_target(std::string_view target) {
     const std::size_t end = std::min(target.find('/', at), target.size());
     auto part = percent_decoded(target.substr(at, end - at));
     if (!part || *part == "." || *part == "..") return std::nullopt;
+    // An escaped separator is never meant well.
+    if (part->find_first_of("/\\") != std::string::npos) return std::nullopt;
     if (part->empty() && end != target.size()) return std::nullopt;
     parts.push_back(std::move(*part));
     at = end + 1;

@@ -14,6 +14,9 @@ namespace insula::gateway {
 /// encoding. A trailing slash gives an empty last part.
 std::optional<std::vector<std::string>> split_target(std::string_view target);
 
+/// A text without its escapes ("%20"). Nothing if one is wrong.
+std::optional<std::string> percent_decoded(std::string_view text);
+
 /// A text as a value in a query.
 std::string percent_encoded(std::string_view text);
 

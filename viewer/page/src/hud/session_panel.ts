@@ -22,6 +22,9 @@ const choices: { mode: string; text: string; detail: string }[] = [
   { mode: 'test', text: 'Be tested', detail: 'No targets and no help. The report says test.' },
 ];
 
+/** Leads to the start page: other exercises, and how one gets on. */
+const allExercises = () => el('a', { href: 'start.html' }, 'All exercises');
+
 export class SessionPanel {
   private readonly start: Dialog;
   private readonly end: Dialog;
@@ -125,14 +128,15 @@ export class SessionPanel {
     // A scene that its author has saved again goes on being tried.
     if (this.tried) return this.begin('practice');
     const recorded = el('a', { href: 'replay.html', target: '_blank', rel: 'noopener' }, 'Recorded sessions');
-    this.start.show(title, [el('p', {}, exercise?.text ?? ''), note, recorded], this.answers());
+    const links = el('p', { class: 'links' }, ...(this.role === 'trainee' ? [allExercises()] : []), recorded);
+    this.start.show(title, [el('p', {}, exercise?.text ?? ''), note, links], this.answers());
   }
 
   private showEnd(state: HudState): void {
     const again = this.role === 'observer' ? [] : this.answers();
     this.end.show(
       state.state === 'done' ? 'Exercise complete' : 'Exercise failed',
-      summaryOf(state, this.metrics.values),
+      [...summaryOf(state, this.metrics.values), ...(this.role === 'trainee' ? [allExercises()] : [])],
       [...again, { name: 'close', text: 'Look at the field', run: () => undefined }],
       () => undefined,
     );

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the start page asks the gateway for, and checks before use.
+
+export interface Exercise {
+  scene: string;
+  group: string;
+  title: string;
+  text: string;
+  picture: boolean;
+}
+
+export interface Person {
+  pseudonym: string;
+  role: string;
+  handedness: string;
+  year: number;
+}
+
+export interface Run {
+  uuid: string;
+  scene: string;
+  title: string;
+  mode: string;
+  beganMs: number;
+  durationS: number;
+  /** 'done', 'failed' or 'running': left before its end. */
+  state: string;
+  goals: number;
+  goalsDone: number;
+  faults: number;
+  /** Name of the recording; empty: there is none. */
+  recording: string;
+}
+
+export interface History {
+  scene: string;
+  title: string;
+  runs: number;
+  last: Run | null;
+  best: Run | null;
+}
+
+export interface Curve {
+  metric: string;
+  hand: string;
+  text: string;
+  unit: string;
+  better: string;
+  digits: number;
+  points: { uuid: string; beganMs: number; mode: string; done: boolean; value: number }[];
+}
+
+export interface Running {
+  scene: string;
+  person: string;
+  /** 'running', 'loading', 'refused', or '' if nothing is known. */
+  state: string;
+  text: string;
+}
+
+type Json = Record<string, unknown>;
+
+const object = (value: unknown): Json => (typeof value === 'object' && value !== null ? (value as Json) : {});
+const list = (value: unknown): Json[] => (Array.isArray(value) ? value.map(object) : []);
+const text = (value: unknown): string => (typeof value === 'string' ? value : '');
+const number = (value: unknown): number => (typeof value === 'number' && Number.isFinite(value) ? value : 0);
+
+export function exercisesOf(json: unknown): Exercise[] {
+  return list(json)
+    .map((e) => ({
+      scene: text(e.scene),
+      group: text(e.group),
+      title: text(e.title),
+      text: text(e.text),
+      picture: e.picture === true,
+    }))
+    .filter((e) => e.scene !== '');
+}
+
+export function peopleOf(json: unknown): Person[] {
+  return list(json)
+    .map((p) => ({
+      pseudonym: text(p.pseudonym),
+      role: text(p.role),
+      handedness: text(p.handedness),
+      year: number(p.year),
+    }))
+    .filter((p) => p.pseudonym !== '');
+}
+
+export function runOf(json: unknown): Run | null {
+  const r = object(json);
+  if (text(r.uuid) === '') return null;
+  return {
+    uuid: text(r.uuid),
+    scene: text(r.scene),
+    title: text(r.title),
+    mode: text(r.mode),
+    beganMs: number(r.began_ms),
+    durationS: number(r.duration_s),
+    state: text(r.state),
+    goals: number(r.goals),
+    goalsDone: number(r.goals_done),
+    faults: number(r.faults),
+    recording: text(r.recording),
+  };
+}
+
+export function historyOf(json: unknown): Map<string, History> {
+  const out = new Map<string, History>();
+  for (const h of list(json)) {
+    const scene = text(h.scene);
+    if (scene !== '')
+      out.set(scene, { scene, title: text(h.title), runs: number(h.runs), last: runOf(h.last), best: runOf(h.best) });
+  }
+  return out;
+}
+
+export function curvesOf(json: unknown): Curve[] {
+  return list(json).map((c) => ({
+    metric: text(c.metric),
+    hand: text(c.hand),
+    text: text(c.text),
+    unit: text(c.unit),
+    better: text(c.better),
+    digits: Math.min(6, Math.max(0, number(c.digits))),
+    points: list(c.points).map((p) => ({
+      uuid: text(p.uuid),
+      beganMs: number(p.began_ms),
+      mode: text(p.mode),
+      done: p.done === true,
+      value: number(p.value),
+    })),
+  }));
+}
+
+export function runningOf(json: unknown): Running {
+  const s = object(json);
+  return { scene: text(s.scene), person: text(s.person), state: text(s.state), text: text(s.text) };
+}
+
+/** The gateway's answers. A refusal is thrown as an Error with its text. */
+export class Api {
+  constructor(private readonly base: URL) {}
+
+  private async ask(path: string, query: Record<string, string> = {}, body?: object): Promise<unknown> {
+    const url = new URL(`api/${path}`, this.base);
+    for (const [name, value] of Object.entries(query)) url.searchParams.set(name, value);
+    const address = url.href.replaceAll('+', '%20');
+    const answer = await fetch(
+      address,
+      body ? { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body) } : {},
+    );
+    const json: unknown = await answer.json().catch(() => ({}));
+    if (!answer.ok) throw new Error(text(object(json).error) || `the gateway answered ${answer.status}`);
+    return json;
+  }
+
+  exercises = async (): Promise<Exercise[]> => exercisesOf(await this.ask('exercises'));
+  people = async (): Promise<Person[]> => peopleOf(await this.ask('people'));
+  history = async (person: string): Promise<Map<string, History>> => historyOf(await this.ask('history', { person }));
+  curves = async (person: string, scene: string): Promise<Curve[]> =>
+    curvesOf(await this.ask('curves', { person, scene }));
+  running = async (): Promise<Running> => runningOf(await this.ask('state'));
+  addPerson = async (person: Person): Promise<void> => void (await this.ask('people', {}, person));
+  choose = async (scene: string, person: string): Promise<void> =>
+    void (await this.ask('choose', {}, { scene, person }));
+  picture = (scene: string): string => new URL(`api/picture?scene=${encodeURIComponent(scene)}`, this.base).href;
+}

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The exercises as cards, by group: picture, title, what is to be done, and how the last run went.
+import { el } from '../hud/dom';
+import type { Api, Exercise, History } from './api';
+import { groupTitles, resultText, stateOf, stateText } from './wording';
+
+export interface CardActions {
+  begin: (exercise: Exercise) => void;
+  progress: (exercise: Exercise) => void;
+}
+
+export class Cards {
+  readonly root = el('div', { class: 'groups' });
+
+  constructor(
+    private readonly api: Api,
+    private readonly actions: CardActions,
+  ) {}
+
+  /** running: the scene that the engine has now. */
+  show(exercises: readonly Exercise[], history: ReadonlyMap<string, History>, running: string): void {
+    const groups = [...new Set(exercises.map((e) => e.group))];
+    this.root.replaceChildren(
+      ...groups.map((group) =>
+        el(
+          'section',
+          { class: 'group' },
+          el('h2', {}, groupTitles[group] ?? group),
+          el(
+            'ul',
+            { class: 'cards' },
+            ...exercises
+              .filter((e) => e.group === group)
+              .map((e) => this.card(e, history.get(e.scene), e.scene === running)),
+          ),
+        ),
+      ),
+    );
+    if (exercises.length === 0)
+      this.root.replaceChildren(el('p', { class: 'hint' }, 'No exercises were found beside this program.'));
+  }
+
+  private card(e: Exercise, history: History | undefined, running: boolean): HTMLElement {
+    const state = stateOf(history);
+    const begin = el('button', { type: 'button' }, running ? 'Continue' : 'Begin');
+    begin.setAttribute('aria-label', `${begin.textContent} ${e.title}`);
+    begin.onclick = () => this.actions.begin(e);
+    const buttons = [begin];
+    if (history) {
+      const progress = el('button', { type: 'button', class: 'plain' }, 'Progress');
+      progress.setAttribute('aria-label', `Progress in ${e.title}`);
+      progress.onclick = () => this.actions.progress(e);
+      buttons.push(progress);
+    }
+    const picture = e.picture
+      ? el('img', { src: this.api.picture(e.scene), alt: '', loading: 'lazy', width: '480', height: '270' })
+      : el('div', { class: 'no-picture', 'aria-hidden': 'true' }, e.title.slice(0, 1));
+    const results = history?.last
+      ? [
+          el('p', { class: 'result' }, `Last: ${resultText(history.last)}`),
+          ...(history.best && history.best.uuid !== history.last.uuid
+            ? [el('p', { class: 'result' }, `Best: ${resultText(history.best)}`)]
+            : []),
+        ]
+      : [];
+    return el(
+      'li',
+      { class: 'card', 'data-scene': e.scene, 'data-state': state },
+      picture,
+      el(
+        'div',
+        { class: 'body' },
+        el('h3', {}, e.title),
+        el('p', { class: 'state', 'data-state': state }, stateText[state]),
+        el('p', { class: 'text' }, e.text),
+        ...results,
+        el('div', { class: 'row' }, ...buttons),
+      ),
+    );
+  }
+}

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A learning curve as a picture: a metric over the attempts, with its median of the last five.
+import type { Curve } from './api';
+
+const svg = 'http://www.w3.org/2000/svg';
+const width = 300;
+const height = 90;
+const margin = 6;
+
+/** Median of the last `most` values up to each place. */
+export function movingMedian(values: readonly number[], most: number): number[] {
+  return values.map((_, i) => {
+    const sorted = values.slice(Math.max(0, i - most + 1), i + 1).sort((a, b) => a - b);
+    const middle = Math.floor(sorted.length / 2);
+    return sorted.length % 2 === 1 ? sorted[middle]! : (sorted[middle - 1]! + sorted[middle]!) / 2;
+  });
+}
+
+/** Places of the values in the picture: in order of the attempts, larger ones higher. */
+export function places(values: readonly number[]): { x: number; y: number }[] {
+  const least = Math.min(...values);
+  const range = Math.max(...values) - least;
+  return values.map((v, i) => ({
+    x: margin + (values.length === 1 ? 0.5 : i / (values.length - 1)) * (width - 2 * margin),
+    y: height - margin - (range > 0 ? (v - least) / range : 0.5) * (height - 2 * margin),
+  }));
+}
+
+function add(root: SVGElement, tag: string, attributes: Record<string, string>): SVGElement {
+  const e = document.createElementNS(svg, tag);
+  for (const [k, v] of Object.entries(attributes)) e.setAttribute(k, v);
+  root.append(e);
+  return e;
+}
+
+export function curvePicture(curve: Curve, label: string): SVGSVGElement {
+  const root = document.createElementNS(svg, 'svg');
+  root.setAttribute('viewBox', `0 0 ${width} ${height}`);
+  root.setAttribute('role', 'img');
+  root.setAttribute('aria-label', label);
+  const values = curve.points.map((p) => p.value);
+  const at = places(values);
+  const medians = movingMedian(values, 5);
+  if (at.length > 2) {
+    const scale = places([...values, ...medians]).slice(values.length);
+    const d = scale.map((p, i) => `${i === 0 ? 'M' : 'L'}${at[i]!.x.toFixed(1)} ${p.y.toFixed(1)}`).join('');
+    add(root, 'path', { class: 'median', d });
+  }
+  at.forEach((p, i) => {
+    const point = curve.points[i]!;
+    const dot = add(root, 'circle', {
+      cx: p.x.toFixed(1),
+      cy: p.y.toFixed(1),
+      r: '3',
+      class: point.mode === 'test' ? 'test' : 'practice',
+    });
+    const title = add(dot, 'title', {});
+    const when = new Date(point.beganMs).toLocaleString();
+    title.textContent = `${when}: ${point.value.toFixed(curve.digits)} ${curve.unit}`;
+  });
+  return root;
+}

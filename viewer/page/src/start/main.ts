@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Entry of the start page.
+import './start.css';
+import { Api } from './api';
+import { StartPage } from './start_page';
+
+const root = document.getElementById('start')!;
+const base = new URL('./', window.location.href);
+const page = new StartPage(root, new Api(base), () => {
+  window.location.href = new URL('index.html', base).href;
+});
+page.load().catch((e: unknown) => {
+  root.append(`The gateway does not answer: ${e instanceof Error ? e.message : String(e)}`);
+});

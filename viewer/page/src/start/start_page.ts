@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The start page: who you are, what there is to do, and how you get on.
+import { el } from '../hud/dom';
+import type { Api, Exercise, History, Running } from './api';
+import { Cards } from './cards';
+import { People } from './people';
+import { Progress } from './progress';
+
+const pollMs = 200;
+const patienceMs = 60_000;
+
+export class StartPage {
+  private readonly people: People;
+  private readonly cards: Cards;
+  private readonly progress: Progress;
+  private readonly say = el('p', { class: 'say', role: 'status' });
+  private exercises: Exercise[] = [];
+  private history = new Map<string, History>();
+  private running: Running = { scene: '', person: '', state: '', text: '' };
+
+  constructor(
+    root: HTMLElement,
+    private readonly api: Api,
+    /** Goes to the page of the exercise. */
+    private readonly enter: () => void,
+  ) {
+    this.people = new People(api, (person) => void this.changed(person));
+    this.cards = new Cards(api, {
+      begin: (e) => void this.begin(e),
+      progress: (e) => void this.progress.open(e, this.people.person),
+    });
+    this.progress = new Progress(api);
+    root.append(
+      el(
+        'header',
+        { class: 'top' },
+        el('h1', {}, 'Insula'),
+        el('p', {}, 'Aneurysm surgery with two-handed haptics. For training only, never for the care of patients.'),
+      ),
+      el('main', {}, this.people.root, this.say, this.cards.root),
+      this.progress.root,
+    );
+  }
+
+  async load(): Promise<void> {
+    [this.exercises, this.running] = await Promise.all([this.api.exercises(), this.api.running()]);
+    await this.people.load(this.running.person);
+  }
+
+  private async changed(person: string): Promise<void> {
+    try {
+      this.history = await this.api.history(person);
+      this.tell('');
+    } catch (e) {
+      this.history = new Map();
+      this.tell(e instanceof Error ? e.message : String(e));
+    }
+    if (person === this.people.person) this.cards.show(this.exercises, this.history, this.running.scene);
+  }
+
+  private tell(text: string): void {
+    this.say.textContent = text;
+  }
+
+  /** The engine's scene and person may be those that are wanted already; then nothing is loaded. */
+  private async begin(e: Exercise): Promise<void> {
+    const person = this.people.person;
+    this.tell(`Loading ${e.title} …`);
+    try {
+      this.running = await this.api.running();
+      const there = (r: Running) => r.state === 'running' && r.scene === e.scene && r.person === person;
+      if (!there(this.running)) await this.api.choose(e.scene, person);
+      const end = performance.now() + patienceMs;
+      while (!there(this.running)) {
+        if (this.running.state === 'refused' && this.running.scene === e.scene) throw new Error(this.running.text);
+        if (performance.now() > end) throw new Error(`${e.title} has not begun`);
+        await new Promise((r) => setTimeout(r, pollMs));
+        this.running = await this.api.running();
+      }
+      this.enter();
+    } catch (error) {
+      this.tell(error instanceof Error ? error.message : String(error));
+    }
+  }
+}

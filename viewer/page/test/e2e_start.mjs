@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The start page with the real programs in headless Chromium: somebody adds himself, begins another exercise than the
+// running one by keys and clicks, and finds his run on its card. Exit status 77: no browser, no programs or no
+// multicast, skipped.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { check, launch, patience } from './browser.mjs';
+
+const root = fileURLToPath(new URL('../../..', import.meta.url));
+const programs = join(root, 'build/release/bin');
+if (!existsSync(join(programs, 'gateway'))) {
+  console.log(`skipped: no programs in ${programs}`);
+  process.exit(77);
+}
+const folder = mkdtempSync(join(tmpdir(), 'insula_start_'));
+const bus = `udpm://239.255.76.67:${20000 + ((process.pid + 7000) % 20000)}?ttl=0`;
+const words = ['play', '--no-browser', '--no-reload', '--no-record', '--port', '0', '--data', folder];
+const play = spawn(join(programs, 'insula'), words, { cwd: root, env: { ...process.env, LCM_DEFAULT_URL: bus } });
+const address = await new Promise((resolve) => {
+  let said = '';
+  play.stdout.on('data', (d) => {
+    said += d;
+    const found = /viewer at (\S+)/.exec(said);
+    if (found) resolve(found[1]);
+  });
+  play.once('exit', (status) => {
+    console.log(`skipped: insula play ended with ${status}: ${said}`);
+    process.exit(77);
+  });
+});
+
+const browser = await launch();
+const context = await browser.newContext({ viewport: { width: 1366, height: 768 } });
+const page = await context.newPage();
+const errors = [];
+page.on('pageerror', (e) => errors.push(e.message));
+try {
+  await page.goto(address);
+  await page.waitForSelector('.card', patience);
+  assert.ok((await page.locator('.card').count()) >= 4, 'the exercises are there');
+  assert.equal(await page.inputValue('#person'), '', 'a guest at first');
+  check('a start page shows the exercises, and a guest needs nothing');
+
+  await page.getByRole('button', { name: 'Add a person' }).click();
+  await page.keyboard.type('P07');
+  await page.getByLabel('Year of training').fill('3');
+  await page.keyboard.press('Enter');
+  await page.waitForFunction(() => document.querySelector('#person').value === 'P07', null, patience);
+  await page.getByRole('button', { name: 'Add a person' }).click();
+  await page.keyboard.type('p07');
+  await page.keyboard.press('Enter');
+  await page.getByText('the pseudonym "p07" is in use').waitFor(patience);
+  check('a person is added by keys, and a pseudonym that is in use is refused in words');
+
+  const choice = () => page.evaluate(async () => (await fetch('api/state')).json());
+  const other = page.locator('.card', { hasText: '3 Clipping' });
+  assert.match((await choice()).scene, /1_sylvian_fissure/);
+  await other.getByRole('button', { name: /Begin/ }).click();
+  await page.waitForURL(/index\.html/, patience);
+  const running = await choice();
+  assert.deepEqual([running.scene, running.person], ['scenes/training/3_clipping.xml', 'P07']);
+  await page.waitForFunction(() => window.__insula?.ready, null, patience);
+  await page.locator('[data-mode=practice], button', { hasText: /^Try/ }).first().click(patience);
+  await page.waitForFunction(() => window.__insula.frames > 60, null, patience);
+  check('another exercise begins without a terminal, under the name of the person');
+
+  await page.goto(address);
+  await page.locator('.card', { hasText: '1 Opening' }).getByRole('button', { name: /Begin/ }).click();
+  await page.waitForURL(/index\.html/, patience);
+  await page.goto(address);
+  assert.equal(await page.inputValue('#person'), 'P07', 'the page remembers who is here');
+  await other.getByText('begun').waitFor(patience);
+  await other.getByRole('button', { name: /Progress/ }).click();
+  await page.locator('dialog[open] .curve svg circle').first().waitFor(patience);
+  await page.keyboard.press('Escape');
+  check('the run is on the card, with a curve for each metric');
+  assert.deepEqual(errors, []);
+} finally {
+  await browser.close();
+  const ended = new Promise((resolve) => play.once('exit', resolve));
+  play.removeAllListeners('exit');
+  play.once('exit', () => {});
+  play.kill('SIGINT');
+  await Promise.race([new Promise((resolve) => play.once('exit', resolve)), ended]);
+  rmSync(folder, { recursive: true, force: true });
+}
