@@ -112,6 +112,7 @@ if(servo_src)
   # Boost for the Haply service's WebSocket; makers' libraries are opened at run time.
   target_link_libraries(insula_servo PUBLIC insula_haptics PRIVATE Boost::boost ${CMAKE_DL_LIBS})
 endif()
+add_subdirectory(training)
 include(cmake/embed.cmake)
 file(GLOB_RECURSE template_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/tools/new_plugin tools/new_plugin/*)
 set(embedded ${PROJECT_SOURCE_DIR}/meshes/examples/block.msh common/block.msh)
@@ -131,7 +132,8 @@ list(APPEND engine_src ${CMAKE_BINARY_DIR}/generated/new_plugin_files.cpp
 list(FILTER engine_src EXCLUDE REGEX "/engine/main\\.cpp$")
 if(engine_src)
   add_library(insula_engine STATIC ${engine_src})
-  target_link_libraries(insula_engine PUBLIC insula_plugins insula_haptics insula_servo PRIVATE OpenSSL::Crypto)
+  target_link_libraries(insula_engine PUBLIC insula_plugins insula_haptics insula_servo insula_curriculum
+    PRIVATE OpenSSL::Crypto)
   target_compile_definitions(insula_engine PRIVATE INSULA_VERSION="${PROJECT_VERSION}")
 endif()
 if(EXISTS ${PROJECT_SOURCE_DIR}/engine/main.cpp)

@@ -19,7 +19,8 @@ FOLDERS = {
     "core/testing": {"core", "core/bus", "plugins"},
     "plugins": {"core"},
     "haptic_server": {"core", "core/bus", "core/haptics"},
-    "engine": {"core", "core/bus", "core/haptics", "haptic_server"},
+    "training/curriculum": {"core"},
+    "engine": {"core", "core/bus", "core/haptics", "haptic_server", "training/curriculum"},
     "viewer/gateway": {"core", "core/bus"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include "([\w./]+)"')
