@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "core/scene/loader.h"
 #include "core/sim/settings.h"
@@ -20,16 +22,28 @@ namespace fs = std::filesystem;
 
 const fs::path source = INSULA_SOURCE_DIR;
 
+std::vector<std::string> shipped_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(source / "curricula"))
+    if (entry.path().extension() == ".xml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 class Shipped : public testing::Test {
  protected:
   Shipped() { register_builtin(registry_); }
-  Curriculum load(const std::string& name) {
+  Registry registry_;
+};
+
+class ShippedCurriculum : public Shipped, public testing::WithParamInterface<std::string> {
+ protected:
+  Curriculum load() {
     CurriculumFiles files(registry_);
-    auto result = load_curriculum(source / "curricula" / name, files);
+    auto result = load_curriculum(source / "curricula" / (GetParam() + ".xml"), files);
     EXPECT_EQ(result.diagnostics.format(), "");
     return result.curriculum.value_or(Curriculum{});
   }
-  Registry registry_;
 };
 
 TEST_F(Shipped, FactsAreThoseOfReports) {
@@ -67,51 +81,50 @@ TEST_F(Shipped, BandsAreRead) {
   EXPECT_NE(why.find("has no group \"surgeons\""), std::string::npos) << why;
 }
 
-TEST_F(Shipped, TestsAreWithoutHelpAndComeAfterPractice) {
-  for (const char* name : {"residency_year.xml", "rupture_drill.xml"}) {
-    SCOPED_TRACE(name);
-    const Curriculum c = load(name);
-    ASSERT_FALSE(c.modules.empty());
-    for (const Module& m : c.modules) {
-      EXPECT_EQ(m.tasks.front().mode, TaskMode::practice) << m.id;
-      for (const Task& t : m.tasks)
-        for (const Gate& g : t.gates) {
-          EXPECT_EQ(g.text.find("group"), std::string::npos) << "no figures of groups: none are of persons";
-          EXPECT_LE(g.in_a_row, t.seeds.empty() ? 100 : int(t.seeds.size())) << t.id << ": a row needs as many seeds";
-        }
-    }
-    const Progress p = evaluate(c, {}, 0, std::chrono::minutes{0});
-    EXPECT_EQ(p.next.task, c.modules.front().tasks.front().id);
+TEST_P(ShippedCurriculum, PractisesBeforeItTestsAndAsksForNoFiguresOfGroups) {
+  const Curriculum c = load();
+  ASSERT_FALSE(c.modules.empty());
+  for (const Module& m : c.modules) {
+    ASSERT_FALSE(m.tasks.empty());
+    EXPECT_EQ(m.tasks.front().mode, TaskMode::practice) << m.id;
+    for (const Task& t : m.tasks)
+      for (const Gate& g : t.gates) {
+        EXPECT_EQ(g.text.find("group"), std::string::npos) << "none are of persons";
+        EXPECT_LE(g.in_a_row, t.seeds.empty() ? 100 : int(t.seeds.size())) << t.id << ": a row needs as many seeds";
+      }
   }
+  EXPECT_EQ(evaluate(c, {}, 0, std::chrono::minutes{0}).next.task, c.modules.front().tasks.front().id);
 }
 
-/// Somebody who succeeds each time and follows each recommendation gets through, and keeps it by the repetitions.
-TEST_F(Shipped, CanBePassedByDoingWhatIsNext) {
-  for (const char* name : {"residency_year.xml", "rupture_drill.xml"}) {
-    SCOPED_TRACE(name);
-    const Curriculum c = load(name);
-    std::vector<Attempt> attempts;
-    std::int64_t now = 1'770'000'000'000;
-    bool passed = false;
-    for (int i = 0; i < 200; ++i) {
-      const Progress p = evaluate(c, attempts, now, std::chrono::minutes{60});
-      passed = p.passed;
-      if (p.next.kind != Recommendation::Kind::nothing) {
-        Attempt a{p.next.scene, now,         p.next.mode == TaskMode::test ? "test" : "practice", true, {}, {},
-                  p.next.seed,  p.next.guide};
-        for (const Module& m : c.modules)
-          for (const Task& t : m.tasks)
-            for (const Gate& g : t.gates)
-              if (g.kind == Gate::Kind::metric) a.metrics[{g.metric, g.hand}] = g.at_most.value_or(1);
-        attempts.push_back(a);
-      }
-      now += 8 * 3'600'000;
-    }
-    EXPECT_TRUE(passed);
-    EXPECT_GT(attempts.size(), 10u);
-    EXPECT_LT(attempts.size(), 200u) << "in the end there is nothing to do on most days";
-  }
+/// A good attempt at what is recommended.
+Attempt attempt_at(const Recommendation& next, const Curriculum& curriculum, std::int64_t now_ms) {
+  const std::string mode = next.mode == TaskMode::test ? "test" : "practice";
+  Attempt out{next.scene, now_ms, mode, true, {}, {}, next.seed, next.guide};
+  for (const Module& m : curriculum.modules)
+    for (const Task& t : m.tasks)
+      for (const Gate& g : t.gates)
+        if (g.kind == Gate::Kind::metric) out.metrics[{g.metric, g.hand}] = g.at_most.value_or(g.at_least.value_or(0));
+  return out;
 }
+
+TEST_P(ShippedCurriculum, IsPassedByWhoeverDoesWhatIsNext) {
+  const Curriculum c = load();
+  std::vector<Attempt> attempts;
+  std::int64_t now_ms = 1'770'000'000'000;
+  bool passed = false;
+  for (int i = 0; i < 200; ++i) {
+    const Progress p = evaluate(c, attempts, now_ms, std::chrono::minutes{60});
+    passed = p.passed;
+    if (p.next.kind != Recommendation::Kind::nothing) attempts.push_back(attempt_at(p.next, c, now_ms));
+    now_ms += 8 * 3'600'000;
+  }
+  EXPECT_TRUE(passed);
+  EXPECT_GT(attempts.size(), 10u);
+  EXPECT_LT(attempts.size(), 200u) << "in the end there is nothing to do on most days";
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, ShippedCurriculum, testing::ValuesIn(shipped_names()),
+                         [](const auto& curriculum) { return curriculum.param; });
 
 }  // namespace
 }  // namespace insula
