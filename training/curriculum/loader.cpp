@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "training/curriculum/loader.h"
 
+#include <algorithm>
 #include <exception>
+#include <string>
 
 #include "core/scene/first_diagnostics.h"
 #include "core/xml/document.h"
@@ -9,6 +11,14 @@
 #include "training/curriculum/reader.h"
 
 namespace insula {
+namespace {
+
+std::string first_name(std::string_view text, std::size_t at) {
+  const std::size_t end = text.find_first_of(" \t\r\n/>", at);
+  return std::string(text.substr(at, std::min(end, text.size()) - at).substr(0, 64));
+}
+
+}  // namespace
 
 CurriculumResult load_curriculum_text(std::string_view text, const std::filesystem::path& virtual_path,
                                       CurriculumSources& sources) {
@@ -42,12 +52,12 @@ CurriculumResult load_curriculum(const std::filesystem::path& file, CurriculumSo
 bool is_curriculum_file(const std::filesystem::path& file) {
   std::string text;
   if (!read_text_file(file.string(), DocumentLimits{}.file_bytes, text).empty()) return false;
-  // A misspelt end still belongs to a curriculum: its start tag decides.
+  // The first start tag decides, also where something is wrong behind it.
   std::size_t at = 0;
   while ((at = text.find('<', at)) != std::string::npos && at + 1 < text.size()) {
     if (text[at + 1] == '?') at = text.find("?>", at);
     else if (text.compare(at, 4, "<!--") == 0) at = text.find("-->", at);
-    else return text.compare(at, 11, "<curriculum") == 0;
+    else return nearest_name(first_name(text, at + 1), {"curriculum", "scene", "part"}) == "curriculum";
     if (at == std::string::npos) break;
   }
   return false;

@@ -24,7 +24,8 @@ CurriculumResult load_curriculum(const std::filesystem::path& file, CurriculumSo
 CurriculumResult load_curriculum_text(std::string_view text, const std::filesystem::path& virtual_path,
                                       CurriculumSources& sources);
 
-/// Whether the root element of a file is <curriculum>. Files that cannot be read are none.
+/// Whether the root element of a file is <curriculum>, or nearest to it among the roots that there are. Files that
+/// cannot be read are none.
 bool is_curriculum_file(const std::filesystem::path& file);
 
 }  // namespace insula

@@ -172,7 +172,10 @@ TEST_F(LoadCurriculum, TheRootDecidesWhatAFileIs) {
   const auto is = [&](const std::string& text) { return is_curriculum_file(folder_.write("file.xml", text)); };
   EXPECT_TRUE(is("<curriculum title=\"C\"/>"));
   EXPECT_TRUE(is("\xEF\xBB\xBF<?xml version=\"1.0\"?>\n<!-- a < b --><curriculum"));
+  EXPECT_TRUE(is("<curiculum>")) << "a misspelt one";
   EXPECT_FALSE(is("<scene/>"));
+  EXPECT_FALSE(is("<sceen/>"));
+  EXPECT_FALSE(is("<"));
   EXPECT_FALSE(is("<!-- <curriculum> -->"));
   EXPECT_FALSE(is(""));
   EXPECT_FALSE(is_curriculum_file(folder_.path() / "none.xml"));
