@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What `cmake --install` puts where, in two components, and the Debian packages made of them:
-#   insula      bin/ programs, share/insula/ page, scenes, meshes, plugin examples, the manual
+#   insula      bin/ programs, share/insula/ page, scenes, curricula, meshes, plugin examples, the manual
 #   insula-dev  include/insula/ headers, lib/insula/ libraries, lib/cmake/Insula/ package for find_package(Insula)
 include(CMakePackageConfigHelpers)
 set(share share/insula)
@@ -9,7 +9,7 @@ set(config lib/cmake/Insula)
 # --- programs and data -----------------------------------------------------------------------------------------------
 install(TARGETS insula EXPORT InsulaTargets RUNTIME DESTINATION bin COMPONENT insula)
 install(TARGETS insula_workbench haptic_server gateway RUNTIME DESTINATION bin COMPONENT insula)
-install(DIRECTORY scenes meshes DESTINATION ${share} COMPONENT insula PATTERN "*.py" EXCLUDE)
+install(DIRECTORY scenes curricula meshes DESTINATION ${share} COMPONENT insula PATTERN "*.py" EXCLUDE)
 install(DIRECTORY plugins DESTINATION ${share} COMPONENT insula FILES_MATCHING PATTERN "*.xml")
 install(DIRECTORY docs DESTINATION ${share} COMPONENT insula)
 install(FILES LICENSE README.md DESTINATION ${share} COMPONENT insula)

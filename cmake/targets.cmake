@@ -112,6 +112,7 @@ if(servo_src)
   # Boost for the Haply service's WebSocket; makers' libraries are opened at run time.
   target_link_libraries(insula_servo PUBLIC insula_haptics PRIVATE Boost::boost ${CMAKE_DL_LIBS})
 endif()
+add_subdirectory(training)
 include(cmake/embed.cmake)
 file(GLOB_RECURSE template_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/tools/new_plugin tools/new_plugin/*)
 set(embedded ${PROJECT_SOURCE_DIR}/meshes/examples/block.msh common/block.msh)
@@ -125,18 +126,13 @@ foreach(f ${lcm_files})
   list(APPEND embedded ${f} ${name})
 endforeach()
 insula_embed(${CMAKE_BINARY_DIR}/generated/message_declarations.cpp message_declarations ${embedded})
-# --- the training store: persons and their runs -----------------------------------------------------------------------
-insula_glob(store_src training/store/*.cpp)
-add_library(insula_store STATIC ${store_src})
-target_link_libraries(insula_store PUBLIC insula_core PRIVATE SQLite::SQLite3)
-
 insula_glob(engine_src engine/*.cpp)
 list(APPEND engine_src ${CMAKE_BINARY_DIR}/generated/new_plugin_files.cpp
   ${CMAKE_BINARY_DIR}/generated/message_declarations.cpp)
 list(FILTER engine_src EXCLUDE REGEX "/engine/main\\.cpp$")
 if(engine_src)
   add_library(insula_engine STATIC ${engine_src})
-  target_link_libraries(insula_engine PUBLIC insula_plugins insula_haptics insula_servo insula_store
+  target_link_libraries(insula_engine PUBLIC insula_plugins insula_haptics insula_servo insula_store insula_curriculum
     PRIVATE OpenSSL::Crypto)
   target_compile_definitions(insula_engine PRIVATE INSULA_VERSION="${PROJECT_VERSION}")
 endif()

@@ -34,7 +34,8 @@ struct Options : insula::CommandLine {
 
   std::string element;
   fs::path output, folder, plugin_folder;
-  bool no_browser = false, no_reload = false, no_report = false, no_record = false, list_only = false;
+  bool curriculum = false, no_browser = false, no_reload = false, no_report = false, no_record = false,
+       list_only = false;
   insula::NewPluginOptions new_plugin;
   insula::DevicesOptions devices;
   insula::RunOptions run;
@@ -54,7 +55,12 @@ void add_scene_commands(Options& c) {
 
   auto* schema = c.app.add_subcommand("schema", "XML schema of scene files, for editors");
   schema->add_option("-o,--output,file", c.output, "file to write (default: standard output)");
-  schema->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_schema(x, c.output); }; });
+  schema->add_flag("--curriculum", c.curriculum, "of curriculum files instead");
+  schema->callback([&c] {
+    c.chosen = [&](const auto& x) {
+      return c.curriculum ? insula::cmd_curriculum_schema(x, c.output) : insula::cmd_schema(x, c.output);
+    };
+  });
 
   auto* docs = c.app.add_subcommand("docs", "reference pages of all elements, in Markdown");
   docs->add_option("-o,--output,folder", c.folder, "folder to write to")->required();
@@ -234,7 +240,8 @@ void add_tool_programs(Options& c) {
     const char *command, *doc, *program, *when_missing;
   };
   static const ToolProgram tools[] = {
-      {"check", "read scenes and report everything that is wrong with them, and what a step of them costs",
+      {"check",
+       "read scenes and curricula and report everything that is wrong with them, and what a step of a scene costs",
        "insula_workbench", "Build it: ./insula build."},
       {"bench", "where the time of a step goes", "insula_workbench", "Build it: ./insula build."},
       {"case", "training cases from surfaces and scans (see docs/making-a-case.md)", "insula_case",

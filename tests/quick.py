@@ -21,6 +21,7 @@ PROGRAMS = (
     ("plugins/", "plugin_tests"),
     ("haptic_server/", "servo_tests"),
     ("engine/", "engine_tests"),
+    ("training/curriculum/", "curriculum_tests"),
     ("viewer/gateway/", "gateway_tests"),
     ("lcm_types/", "core_tests"),
     ("tools/workbench/", "workbench_tests"),

@@ -5,23 +5,10 @@
 #include <algorithm>
 
 #include "core/scene/place_text.h"
+#include "core/scene/read_params.h"
 
 namespace insula {
 namespace {
-
-std::string quoted_list(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 12;
-  if (names.size() <= most) return joined(names);
-  return joined({names.begin(), names.begin() + most}) + ", ...";
-}
-
-bool is_id(std::string_view text) {
-  const auto good = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
-           c == '.' || (static_cast<unsigned char>(c) & 0x80);  // letters of other languages
-  };
-  return !text.empty() && text.size() <= 128 && std::all_of(text.begin(), text.end(), good);
-}
 
 bool may_stand_in(const ComponentInfo& info, Kind parent) {
   return std::find(info.parents.begin(), info.parents.end(), parent) != info.parents.end();
@@ -121,13 +108,13 @@ void SceneBuilder::unknown_element(const Element& element, const Component& pare
   if (near.empty()) near = nearest_name(element.name, anywhere);
   std::string text = "unknown element <" + shown(element.name) + ">";
   if (!near.empty()) text += "; did you mean <" + near + ">?";
-  else text += " in <" + parent.element + "> (it may hold: " + quoted_list(here) + ")";
+  else text += " in <" + parent.element + "> (it may hold: " + first_names(here) + ")";
   diagnostics_.error(element.pos, text);
   lose_ids(element);
 }
 
 void SceneBuilder::misplaced(const Element& element, const ComponentInfo& info, const Component& parent) {
-  const auto in_brackets = [](const auto& names) { return " (" + quoted_list(names) + ")"; };
+  const auto in_brackets = [](const auto& names) { return " (" + first_names(names) + ")"; };
   const std::vector<std::string> places = place_texts(registry_, info, in_brackets);
   diagnostics_.error(element.pos,
                      "<" + element.name + "> may not stand in <" + parent.element + ">" +
@@ -162,38 +149,9 @@ void SceneBuilder::read_id(const Element& element, Component& component) {
 }
 
 void SceneBuilder::read_params(const Element& element, Component& component) {
-  std::vector<std::string> names, suggested = element.broken_attributes;
-  for (const ParamBase* p : component.params()) names.push_back(p->name());
-  for (const auto& a : element.attributes) {
-    if (a.name == "id") continue;
-    ParamBase* p = component.find_param(a.name);
-    if (const ParamBase* renamed = p ? nullptr : component.find_renamed_param(a.name)) {
-      report(component, a.name_pos, in_quotes(a.name) + " is now called " + in_quotes(renamed->name()));
-      suggested.push_back(renamed->name());
-      continue;
-    }
-    if (!p) {
-      const std::string near = tree_.suggestions.afford(names.size()) ? nearest_name(a.name, names) : "";
-      std::string text = "<" + component.element + "> has no parameter " + in_quotes(a.name);
-      if (!near.empty()) text += "; did you mean \"" + near + "\"?";
-      else if (names.empty()) text += "; it has none";
-      else text += " (it has: " + quoted_list(names) + ")";
-      report(component, a.name_pos, text);
-      suggested.push_back(near);
-      continue;
-    }
-    if (const std::string error = p->assign(a.value, a.value_pos); !error.empty())
-      report(component, a.value_pos, p->name() + ": " + error);
-  }
+  insula::read_params(element, component, tree_.suggestions,
+                      [&](const SourcePos& pos, std::string text) { report(component, pos, std::move(text)); });
   if (!element.broken_attributes.empty()) failed_.insert(&component);
-  for (const ParamBase* p : component.params()) {
-    if (!p->required() || p->given()) continue;
-    // A mistyped name has already been reported. A message that the right one is missing would repeat it.
-    if (std::find(suggested.begin(), suggested.end(), p->name()) != suggested.end()) continue;
-    report(component, element.pos,
-           "<" + component.element + "> needs parameter \"" + p->name() + "\" (" + p->type_name() + ": " +
-               std::string(p->spec().doc) + ")");
-  }
 }
 
 }  // namespace insula

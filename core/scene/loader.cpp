@@ -9,37 +9,11 @@
 
 #include "core/scene/builder.h"
 #include "core/scene/expand.h"
+#include "core/scene/first_diagnostics.h"
 #include "core/xml/document.h"
 
 namespace insula {
 namespace {
-
-constexpr std::size_t max_shown = 100;
-
-std::string counted(std::size_t n, const char* what) { return fmt::format("{} more {}{}", n, what, n == 1 ? "" : "s"); }
-
-/// Keeps the first hundred messages in order of position, and the number of others. Errors have priority over warnings.
-Diagnostics tidy(Diagnostics all) {
-  all.sort_by_position();
-  if (all.all().size() <= max_shown) return all;
-  const std::size_t errors = std::size_t(all.errors()), warnings = all.all().size() - errors;
-  const std::size_t errors_shown = std::min(errors, max_shown),
-                    warnings_shown = std::min(warnings, max_shown - errors_shown);
-  Diagnostics out;
-  std::size_t errors_left = errors_shown, warnings_left = warnings_shown;
-  for (const Diagnostic& d : all.all()) {
-    std::size_t& left = d.severity == Severity::error ? errors_left : warnings_left;
-    if (left == 0) continue;
-    --left;
-    d.severity == Severity::error ? out.error(d.pos, d.text) : out.warning(d.pos, d.text);
-  }
-  std::string rest;
-  if (errors > errors_shown) rest = counted(errors - errors_shown, "error");
-  if (warnings > warnings_shown) rest += (rest.empty() ? "" : " and ") + counted(warnings - warnings_shown, "warning");
-  const SourcePos whole_file{all.all().front().pos.file, 0, 0};
-  all.ok() ? out.warning(whole_file, "and " + rest) : out.error(whole_file, "and " + rest);
-  return out;
-}
 
 void set_time_step(Element& root, double step_s) {
   std::erase_if(root.attributes, [](const Attribute& a) { return a.name == "time_step"; });
@@ -78,7 +52,7 @@ LoadResult load_expanded(std::string_view text, const std::filesystem::path& vir
   } catch (...) {
     found.error({virtual_path.generic_string(), 0, 0}, "cannot be loaded");
   }
-  result.diagnostics = tidy(std::move(found));
+  result.diagnostics = first_diagnostics(std::move(found));
   if (!result.diagnostics.ok()) result.scene.reset();
   return result;
 }

@@ -8,23 +8,13 @@
 
 #include "core/base/text.h"
 #include "core/xml/document.h"
+#include "engine/authoring/curriculum_reference.h"
 #include "engine/authoring/describe.h"
+#include "engine/authoring/param_table.h"
 #include "engine/command_line/commands.h"
 
 namespace insula {
 namespace {
-
-std::string cell(std::string_view text) {
-  std::string out;
-  for (char c : text) {
-    if (c == '|') out += '\\';
-    if (c == '<') out += "&lt;";
-    else out += c;
-  }
-  return out.empty() ? "-" : out;
-}
-
-std::string code(std::string_view text) { return text.empty() ? "-" : "`" + std::string(text) + "`"; }
 
 /// The element with its required parameters, as a start for an author.
 std::string skeleton(const ComponentInfo& info, const Component& component) {
@@ -75,16 +65,7 @@ std::string page(const Registry& registry, const ComponentInfo& info, const std:
     for (const auto* child : children) links.push_back("[" + child->element + "](" + child->element + ".md)");
     out += "May hold: " + joined(links) + ".\n\n";
   }
-  out +=
-      "| parameter | type | default | allowed | what it is |\n|---|---|---|---|---|\n| `id` | text | - | letters, "
-      "digits, . _ - | name by which others refer to it |\n";
-  for (const ParamBase* p : component->params()) {
-    std::string type = p->type_name();
-    if (const auto units = units_text(*p); !units.empty()) type += " in " + units;
-    const std::string fallback = p->required() ? "**required**" : code(*p->spec().fallback);
-    out += fmt::format("| `{}` | {} | {} | {} | {} |\n", p->name(), cell(type), fallback, cell(allowed_text(*p)),
-                       cell(p->spec().doc));
-  }
+  out += param_table(*component);
   out += step_data(*component);
   std::string example;
   if (info.plugin != "core" && !plugin_folder.empty() &&
@@ -104,7 +85,7 @@ std::string index(const Registry& registry) {
     }
     out += fmt::format("| [{0}]({0}.md) | {1} | {2} |\n", info->element, cell(info->doc), info->plugin);
   }
-  return out;
+  return out + "\n[Elements of curriculum files](curricula.md)\n";
 }
 
 }  // namespace
@@ -122,7 +103,8 @@ int cmd_docs(const CommandContext& context, const std::filesystem::path& folder,
   if (!write("README.md", index(context.registry))) return 1;
   for (const auto* info : context.registry.all())
     if (!write(info->element + ".md", page(context.registry, *info, plugin_folder))) return 1;
-  context.out << fmt::format("{}: {} pages\n", folder.generic_string(), context.registry.all().size() + 1);
+  if (!write("curricula.md", curriculum_reference())) return 1;
+  context.out << fmt::format("{}: {} pages\n", folder.generic_string(), context.registry.all().size() + 2);
   return 0;
 }
 

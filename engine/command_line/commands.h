@@ -23,8 +23,10 @@ int cmd_list(const CommandContext& context);
 int cmd_describe(const CommandContext& context, const std::string& element);
 /// Writes the XML schema (XSD 1.0) for editors to a file, or to `out` if the path is empty or "-".
 int cmd_schema(const CommandContext& context, const std::filesystem::path& file);
-/// Writes a Markdown page for each element and an index into a folder. With `plugin_folder`, pages show the plugins'
-/// example.xml.
+/// The same of curriculum files.
+int cmd_curriculum_schema(const CommandContext& context, const std::filesystem::path& file);
+/// Writes a Markdown page for each element a page of curricula and an index into a folder. With `plugin_folder`, pages
+/// show the plugins' example.xml.
 int cmd_docs(const CommandContext& context, const std::filesystem::path& folder,
              const std::filesystem::path& plugin_folder = {});
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""check_scenes.py SOURCE INSULA: every shipped scene and example is clean and quick to check, and valid by the schema
-that editors complete from; what the schema must refuse it refuses.
+"""check_scenes.py SOURCE INSULA: every shipped scene, example and curriculum is clean and quick to check, and valid by
+the schema that editors complete from; what the schemas must refuse they refuse.
 """
 import pathlib
 import re
@@ -22,9 +22,22 @@ BAD = {
     "a rule outside of an exercise": '<scene><time_limit limit="60 s"/></scene>',
 }
 
+ONE_TASK = (
+    '<curriculum title="C"><module id="m" title="M"><task id="t" title="T" scene="%s"%s</task></module></curriculum>'
+)
+BAD_CURRICULA = {
+    "a typo of a parameter": '<curriculum titel="x"/>',
+    "an unknown element": '<curriculum title="x"><modul id="a" title="A"/></curriculum>',
+    "a module without an id": '<curriculum title="x"><module title="A"/></curriculum>',
+    "a unit of another quantity": ONE_TASK % ("a.xml", '><gate_goals in_a_row="2" within="3 s"/>'),
+    "an unknown mode": ONE_TASK % ("a.xml", ' mode="exam"><gate_goals/>'),
+    "a list with a word": ONE_TASK % ("a.xml", '><gate_goals/><repetition after="1 three day"/>'),
+    "a gate outside of a task": '<curriculum title="x"><gate_goals/></curriculum>',
+}
 
-def check_each(insula, scenes):
-    """Checks that each scene has no diagnostics and takes little time. Returns the number of failures."""
+
+def check_each(insula, scenes, most_seconds=MOST_SECONDS):
+    """Checks that each file has no diagnostics and takes little time. Returns the number of failures."""
     failures, slowest = 0, (0.0, "")
     for scene in scenes:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -35,10 +48,10 @@ def check_each(insula, scenes):
         said = done.stdout + done.stderr
         # That this machine is too slow for a scene is a warning about the machine.
         rest = re.sub(r".*: warning: too slow for this machine.*\n", "", said)
-        if done.returncode != 0 or "warning" in rest or took > MOST_SECONDS:
+        if done.returncode != 0 or "warning" in rest or took > most_seconds:
             failures += 1
             print("FAILED: %s: status %d, %.2f s\n%s" % (scene, done.returncode, took, said))
-    print("%d scenes checked; the slowest took %.2f s of processor time: %s" % ((len(scenes),) + slowest))
+    print("%d files checked; the slowest took %.2f s of processor time: %s" % ((len(scenes),) + slowest))
     return failures
 
 
@@ -48,31 +61,37 @@ def refused(xsd, *files):
     return "" if done.returncode == 0 else done.stderr or "status %d" % done.returncode
 
 
-def explanations(xsd, scenes):
-    """Checks that each parameter and element that an editor offers has an explanation."""
+def explanations(xsd, scenes, least):
+    """Checks that each parameter and element that an editor offers has an explanation. least: parameters."""
     text = xsd.read_text(encoding="utf-8")
     attribute = r'<xs:attribute name="(?!id|file|prefix|name|value|title)'
     named = len(re.findall(attribute, text))
     explained = len(re.findall(attribute + r'[^>]*>\s*<xs:annotation>', text))
-    print(
-        "%d scenes and parts valid by the schema, %d parameters offered, %d explained" % (len(scenes), named, explained)
-    )
-    if named < 100 or explained < named:
+    print("%d files valid by the schema, %d parameters offered, %d explained" % (len(scenes), named, explained))
+    if named < least or explained < named:
         return ["parameters without an explanation"]
     return []
 
 
-def check_schema(insula, scenes, folder):
-    """Checks that the schema accepts the scenes and rejects wrong ones. Returns the texts of the failures."""
+def check_schema(insula, scenes, bad, folder, *option):
+    """Checks that a schema accepts the files and rejects wrong ones. Returns the schema and texts of failures."""
     xsd = folder / "insula.xsd"
-    subprocess.run([insula, "schema", xsd], check=True, capture_output=True)
+    subprocess.run([insula, "schema", *option, xsd], check=True, capture_output=True)
     failures = [why] if (why := refused(xsd, *scenes)) else []
-    for what, text in BAD.items():
+    for what, text in bad.items():
         file = folder / "bad.xml"
         file.write_text(text, encoding="utf-8")
         if not refused(xsd, file) or subprocess.run([insula, "check", file], capture_output=True).returncode != 2:
             failures.append("%s is not rejected by both" % what)
-    failures += explanations(xsd, scenes)
+    return xsd, failures
+
+
+def check_schemas(insula, scenes, curricula, folder):
+    """Checks both schemas. Returns the texts of the failures."""
+    xsd, failures = check_schema(insula, curricula, BAD_CURRICULA, folder, "--curriculum")
+    failures += explanations(xsd, curricula, 20)
+    xsd, more = check_schema(insula, scenes, BAD, folder)
+    failures += more + explanations(xsd, scenes, 100)
     model = folder / "with_model.xml"
     model.write_text('<?xml version="1.0"?>\n<?xml-model href="insula.xsd"?>\n<scene title="x"/>\n', encoding="utf-8")
     if subprocess.run([insula, "check", model], capture_output=True).returncode != 0:
@@ -87,12 +106,17 @@ def main():
     if len(whole) < 20:
         print("FAILED: only %d scenes were found" % len(whole))
         return 1
-    failures = check_each(insula, whole)
+    curricula = sorted(source.glob("curricula/*.xml"))
+    if len(curricula) < 2:
+        print("FAILED: only %d curricula were found" % len(curricula))
+        return 1
+    # A curriculum reads each of its scenes.
+    failures = check_each(insula, whole) + check_each(insula, curricula, 5 * MOST_SECONDS)
     if not shutil.which("xmllint"):
         print("xmllint (package libxml2-utils) is not installed: the schema is not tried")
         return 1 if failures else 0
     with tempfile.TemporaryDirectory() as name:
-        for failure in check_schema(insula, scenes, pathlib.Path(name)):
+        for failure in check_schemas(insula, scenes, curricula, pathlib.Path(name)):
             failures += 1
             print("FAILED: " + failure)
     return 1 if failures else 0

@@ -158,7 +158,7 @@ class Checker:
             except OSError:
                 shutil.copyfile(a, b)
 
-        for name in ("meshes", "scenes", "plugins"):
+        for name in ("curricula", "meshes", "scenes", "plugins"):
             shutil.copytree(self.source / name, folder / name, copy_function=put)
 
     def scenes(self, page, blocks, foreign):
@@ -169,7 +169,7 @@ class Checker:
             to_check = []
             for block in blocks:
                 path = block.value if block.role in ("file", "bad") else ""
-                complete = block.language == "xml" and re.match(r"\s*(<\?xml|<scene)", block.text)
+                complete = block.language == "xml" and re.match(r"\s*(<\?xml|<scene|<curriculum)", block.text)
                 if not path and complete:
                     path = "scenes/cases/snippet_%d.xml" % block.line
                 if path:

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Snippets of the manual through what reads them: scenes through `insula check`, C++ through the compiler, Python and
-JSON through theirs. One that is only a part of something names the file of the project that it stands in (<!-- in: PATH
--->).
+"""Snippets of the manual through what reads them: scenes and curricula through `insula check`, C++ through the
+compiler, Python and JSON through theirs. One that is only a part of something names the file of the project that it
+stands in (<!-- in: PATH -->).
 """
 import json
 import re
 import shlex
+
+
+FOLDERS = {"scene": "scenes/cases", "curriculum": "curricula"}  # where a file of that root stands
 
 
 def placed(runner, block):
@@ -24,11 +27,12 @@ def scene(runner, block):
             block.line,
             "a part that no scene of the page includes: give it a name (<!-- file: PATH -->)",
         )
-    if not re.search(r"<scene[\s>/]", placed(runner, block)):
+    root = re.search(r"<(scene|curriculum)[\s>/]", placed(runner, block))
+    if not root:
         return runner.that(False, block.line, "a part of a scene; say what it stands in (<!-- in: PATH -->)")
     if block.role == "file" and any(name in block.value for name in ("tether", "pia_membrane", "suture/")):
         return None  # an example of the page's own plugin: its build checks it (manual_plugin_scene, install_plugins)
-    path = block.value if block.role == "file" else "scenes/cases/snippet_%d.xml" % block.line
+    path = block.value if block.role == "file" else "%s/snippet_%d.xml" % (FOLDERS[root[1]], block.line)
     (runner.folder / path).write_text(placed(runner, block), encoding="utf-8")
     return runner.run(["insula", "check", path], block.line, "insula check " + path)
 

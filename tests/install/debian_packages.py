@@ -35,6 +35,7 @@ def main():
         "bin/haptic_server",
         "bin/gateway",
         "share/insula/scenes/training/1_sylvian_fissure.xml",
+        "share/insula/curricula/residency_year.xml",
         "share/insula/docs/README.md",
         "share/insula/meshes/examples/block.msh",
         "include/insula/core/registry/registry.h",

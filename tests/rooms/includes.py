@@ -20,7 +20,8 @@ FOLDERS = {
     "plugins": {"core"},
     "haptic_server": {"core", "core/bus", "core/haptics"},
     "training/store": {"core"},
-    "engine": {"core", "core/bus", "core/haptics", "haptic_server", "training/store"},
+    "training/curriculum": {"core"},
+    "engine": {"core", "core/bus", "core/haptics", "haptic_server", "training/store", "training/curriculum"},
     "viewer/gateway": {"core", "core/bus", "training/store"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include "([\w./]+)"')

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// insula check SCENE...
+// insula check FILE...: scenes and curricula
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,9 +11,11 @@
 #include "core/scene/loader.h"
 #include "core/sim/settings.h"
 #include "core/sim/simulation.h"
+#include "engine/authoring/curriculum_sources.h"
 #include "engine/live/scene_devices.h"
 #include "tools/workbench/cost_model.h"
 #include "tools/workbench/workbench.h"
+#include "training/curriculum/loader.h"
 
 namespace insula {
 namespace {
@@ -71,14 +73,33 @@ std::string check_one(const std::filesystem::path& file, const Registry& registr
   return diagnostics.ok() ? lines : std::string();
 }
 
+/// One curriculum, with the scenes and bands that it names.
+std::string check_curriculum(const std::filesystem::path& file, CurriculumFiles& sources, Diagnostics& diagnostics) {
+  auto loaded = load_curriculum(file, sources);
+  diagnostics = std::move(loaded.diagnostics);
+  if (!loaded.curriculum) return {};
+  std::size_t tasks = 0, gates = 0;
+  for (const Module& module : loaded.curriculum->modules)
+    for (const Task& task : module.tasks) {
+      ++tasks;
+      gates += task.gates.size();
+    }
+  return fmt::format("{}: ok, a curriculum of {} module{}, {} task{}, {} gate{}, content {:016x}\n",
+                     file.generic_string(), loaded.curriculum->modules.size(),
+                     loaded.curriculum->modules.size() == 1 ? "" : "s", tasks, tasks == 1 ? "" : "s", gates,
+                     gates == 1 ? "" : "s", loaded.curriculum->content_hash);
+}
+
 }  // namespace
 
 int cmd_check(const CommandContext& context, const std::vector<std::filesystem::path>& files, bool settle) {
   int status = 0;
   std::optional<CostRates> rates;
+  CurriculumFiles sources(context.registry);
   for (const auto& file : files) {
     Diagnostics diagnostics;
-    const std::string lines = check_one(file, context.registry, diagnostics, rates, settle);
+    const std::string lines = is_curriculum_file(file) ? check_curriculum(file, sources, diagnostics)
+                                                       : check_one(file, context.registry, diagnostics, rates, settle);
     context.err << diagnostics.format();
     if (lines.empty()) status = 2;
     context.out << lines;

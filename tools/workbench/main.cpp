@@ -28,8 +28,9 @@ struct Options : insula::CommandLine {
 };
 
 void add_check(Options& c) {
-  auto* check = c.app.add_subcommand("check", "read scenes and report everything that is wrong with them");
-  check->add_option("scene", c.files, "scene files")->required();
+  auto* check =
+      c.app.add_subcommand("check", "read scenes and curricula and report everything that is wrong with them");
+  check->add_option("file", c.files, "scene and curriculum files")->required();
   check->add_flag("--settle", c.settle,
                   "let scenes settle that do so first: slower, and tells what a step of them costs");
   check->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_check(x, c.files, c.settle); }; });

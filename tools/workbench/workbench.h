@@ -11,7 +11,8 @@
 
 namespace insula {
 
-/// Loads each scene; prints one line per good one to `out`, everything wrong to `err`. Of a scene that settles first
+/// Loads each scene or curriculum; prints one line per good one to `out`, everything wrong to `err`. Of a scene that
+/// settles first
 /// (<settle>) only with `settle` is that done: then what is made after settling and contacts stand, and what a step
 /// costs is known.
 int cmd_check(const CommandContext& context, const std::vector<std::filesystem::path>& files, bool settle = false);
