@@ -20,7 +20,7 @@ std::string value_of(const Element& element, std::string_view name) {
 }
 
 /// Title and text, if the file is a scene with an exercise.
-std::optional<CatalogueEntry> read(const fs::path& file) {
+std::optional<CatalogueEntry> read_entry(const fs::path& file) {
   std::string text;
   if (!read_text_file(file.string(), most_scene_bytes, text).empty()) return std::nullopt;
   Diagnostics ignored;
@@ -49,7 +49,7 @@ std::vector<CatalogueEntry> catalogue(const fs::path& folder) {
       if (it->path().extension() == ".xml" && files.size() < most_scenes) files.push_back(it->path());
     std::sort(files.begin(), files.end());
     for (const fs::path& file : files) {
-      auto entry = read(file);
+      auto entry = read_entry(file);
       if (!entry) continue;
       entry->scene = file.lexically_relative(folder).generic_string();
       entry->group = group;
