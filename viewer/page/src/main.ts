@@ -224,7 +224,7 @@ async function follow(m: SceneInfo): Promise<void> {
     scope.setHome(bundle.view);
     build(bundle);
     reading.begin(bundle);
-    sound.begin(bundle, (place, reach) => world?.tissueNear(place, reach) ?? false);
+    sound.begin(bundle);
     hud.showScene(bundle);
     status.session = session;
     loadError = status.error = '';

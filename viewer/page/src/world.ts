@@ -19,8 +19,6 @@ import { Tool } from './tools';
 
 /** Of a picture, for what fades, s. */
 const longestS = 1;
-/** Tissue is sought this far about a place, m: its vertices are as far apart. */
-const tissueReachM = 0.003;
 /** Of dents below the tools, 1/s. */
 const riseRate = 10;
 const fadeRate = 6;
@@ -50,11 +48,6 @@ export class World {
     this.drawables = new DrawableSet(bundle, this.field, environment);
     this.pulseChannel = bundle.bodies.find((b) => b.pulseChannel !== '')?.pulseChannel ?? '';
     this.root.add(this.scenery.root, this.drawables.root, this.cues.root);
-  }
-
-  /** Whether wet tissue lies within `reach` metres of a place, as it lies now. */
-  tissueNear(place: THREE.Vector3, reach: number): boolean {
-    return this.scenery.probes.some((p) => (p.nearest(place, tissueReachM)?.distanceM ?? Infinity) < reach);
   }
 
   /** Completes the picture of the tissue, in half a second. */

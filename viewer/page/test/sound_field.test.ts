@@ -132,23 +132,36 @@ describe('what a suction tube draws', () => {
     data: Float32Array.from([0, 0, height, 0, 0, 1, radius, height]),
   });
   let now = 0;
-  const at = (surroundings: Surroundings, activity: number, height: number, radius?: number) =>
+  /** near: of a contact from the tip, m. */
+  const at = (
+    activity: number,
+    height: number,
+    { radius = 0.02, near = 1, surroundings = new Surroundings(bundle) } = {},
+  ) =>
     surroundings.drawn({
-      sim_time_s: (now += 1),
+      sim_time_s: (now += 0.1),
       tool: [place(0, 0, 0, { activity }), place(1, 0, 0, { activity: 1 })],
       drawable: [pool(height, radius)],
+      contact_N: Float32Array.from([0.02]),
+      contact_x_m: Float32Array.from([near, 0, 0]),
     } as unknown as RenderFrame);
 
   it('is nothing while it does not suck', () => {
-    expect(at(new Surroundings(bundle, () => true), 0, 0.01)).toBeNull();
+    expect(at(0, 0.01)).toBeNull();
   });
 
-  it('is fluid below a pool, air above it, and tissue where it closes the opening', () => {
-    const open = new Surroundings(bundle, () => false);
-    expect(at(open, 1, 0.005)).toBe('fluid');
-    expect(at(open, 1, -0.005)).toBe('air');
-    expect(at(open, 1, 0.005, 0)).toBe('air');
-    expect(at(new Surroundings(bundle, () => true), 1, -0.005)).toBe('tissue');
+  it('is fluid below a pool, air above it, and tissue where a contact lies on its rim', () => {
+    expect(at(1, 0.005)).toBe('fluid');
+    expect(at(1, -0.005)).toBe('air');
+    expect(at(1, 0.005, { radius: 0 })).toBe('air');
+    expect(at(1, -0.005, { near: 0.001 })).toBe('tissue');
+    expect(at(1, -0.005, { near: 0.003 })).toBe('air');
+  });
+
+  it('is tissue for a moment after a contact, since contacts flicker', () => {
+    const surroundings = new Surroundings(bundle);
+    const heard = [0.001, 1, 1].map((near) => at(1, -0.005, { near, surroundings }));
+    expect(heard).toEqual(['tissue', 'tissue', 'air']);
   });
 
   it('a place beside the pool is not in it', () => {

@@ -11,7 +11,7 @@ import { Beats } from './beats';
 import type { Desk } from './desk';
 import { Impacts } from './impacts';
 import { Poisson } from './poisson';
-import { Surroundings, type TissueNear } from './surroundings';
+import { Surroundings } from './surroundings';
 import { channelAlarm, clockAlarm, hasLimits, inflowOf, pressureOfPulse, type Priority, soundOf } from './table';
 import { dropsPerSecond } from './voices/bleeding';
 import { bubbleRate } from './voices/suction';
@@ -34,7 +34,7 @@ export class Listener {
   private late: ReadonlyMap<string, Priority> = new Map();
   private lastS: number | null = null;
 
-  constructor(bundle: Bundle, tissue: TissueNear) {
+  constructor(bundle: Bundle) {
     this.channels = new Channels(bundle.channels);
     this.pulse = bundle.bodies.find((b) => b.pulseChannel !== '')?.pulseChannel ?? '';
     this.pressure = pressureOfPulse(bundle.channels, this.pulse);
@@ -42,7 +42,7 @@ export class Listener {
     this.inflows = [...new Set(inflows)].filter((id) => id !== '');
     this.limited = bundle.channels.filter(hasLimits);
     this.impacts = new Impacts(bundle);
-    this.surroundings = new Surroundings(bundle, tissue);
+    this.surroundings = new Surroundings(bundle);
   }
 
   event({ kind, sim_time_s: timeS }: Pick<SimEvent, 'kind' | 'sim_time_s'>, desk: Desk, arrivedMs: number): void {

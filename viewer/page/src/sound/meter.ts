@@ -3,6 +3,9 @@
 // clock of the audio. What the sound card adds is the same for all and told apart.
 import type { Voice } from './table';
 
+/** A sound should begin within this after its message, ms. */
+const limitMs = 20;
+
 export interface SoundReport {
   /** A context plays. */
   running: boolean;
@@ -14,12 +17,14 @@ export interface SoundReport {
   /** From the message's arrival to the sound's start: of the last one, and the longest. */
   latest_ms: number;
   latest_ms_max: number;
+  /** Sounds that began more than 20 ms after the message. */
+  late: number;
   /** Of the sound card and the browser's buffer. */
   device_ms: number;
 }
 
 export const freshReport = (): SoundReport => ({
-  ...{ running: false, played: 0, left_out: 0, by_voice: {}, latest_ms: 0, latest_ms_max: 0, device_ms: 0 },
+  ...{ running: false, played: 0, left_out: 0, by_voice: {}, latest_ms: 0, latest_ms_max: 0, late: 0, device_ms: 0 },
 });
 
 /** arrivedMs: of the page's clock. aheadS: how far the start lies in the future of the audio's clock. */
@@ -27,5 +32,6 @@ export function count(report: SoundReport, voice: Voice, arrivedMs: number, ahea
   report.played++;
   report.by_voice[voice] = (report.by_voice[voice] ?? 0) + 1;
   report.latest_ms = performance.now() - arrivedMs + 1000 * aheadS;
+  if (report.latest_ms > limitMs) report.late++;
   report.latest_ms_max = Math.max(report.latest_ms_max, report.latest_ms);
 }

@@ -12,7 +12,7 @@ export interface SoundSettings {
 /** Off until it is asked for: several pages may show one session in one room. */
 export const defaultSettings = (): SoundSettings => ({
   on: false,
-  volume: 0.6,
+  volume: 0.7,
   groups: { monitor: true, instruments: true, alarms: true },
 });
 

@@ -57,35 +57,44 @@ export class ToolSolid {
   readonly index: number;
   private readonly hinges: readonly HingeData[];
   private readonly parts: { link: number; solid: Solid }[];
-  private readonly matrix = new THREE.Matrix4();
+  /** From the scene into the frame of each link, for this pose. */
+  private readonly into: THREE.Matrix4[];
+  private placed: ToolFrame | null = null;
   private readonly local = new THREE.Vector3();
 
   constructor(data: ToolData) {
     this.index = data.index;
     this.hinges = data.hinges;
     this.parts = data.parts.map((p) => ({ link: p.link, solid: new Solid(p) }));
+    this.into = Array.from({ length: data.hinges.length + 1 }, () => new THREE.Matrix4());
   }
 
   touches(point: THREE.Vector3, at: ToolFrame, reach: number): boolean {
-    const root = inToolFrame(point, at);
-    return this.parts.some(({ link, solid }) => {
-      this.local.copy(root).applyMatrix4(linkPose(this.hinges, link, at.opening_rad, this.matrix).invert());
-      return solid.touches(this.local, reach);
+    if (at !== this.placed) this.place(at);
+    return this.parts.some(({ link, solid }) =>
+      solid.touches(this.local.copy(point).applyMatrix4(this.into[link]!), reach),
+    );
+  }
+
+  private place(at: ToolFrame): void {
+    this.placed = at;
+    const root = new THREE.Matrix4().compose(position(at), rotation(at), new THREE.Vector3(1, 1, 1));
+    this.into.forEach((into, k) => {
+      linkPose(this.hinges, k, at.opening_rad, into);
+      into.premultiply(root).invert();
     });
   }
 }
 
+type PoseFrame = Pick<ToolFrame, 'p_m' | 'q'>;
+const position = ({ p_m: p }: PoseFrame) => new THREE.Vector3(p[0], p[1], p[2]);
+/** w x y z, as in the messages. */
+const rotation = ({ q }: PoseFrame) => new THREE.Quaternion(q[1], q[2], q[3], q[0]).normalize();
+
 /** A point of the scene in the frame of a tool. */
-export function inToolFrame(point: THREE.Vector3, { p_m: p, q }: Pick<ToolFrame, 'p_m' | 'q'>): THREE.Vector3 {
-  const turn = new THREE.Quaternion(q[1], q[2], q[3], q[0]).normalize().invert();
-  return new THREE.Vector3(point.x - p[0]!, point.y - p[1]!, point.z - p[2]!).applyQuaternion(turn);
-}
+export const inToolFrame = (point: THREE.Vector3, at: PoseFrame): THREE.Vector3 =>
+  point.clone().sub(position(at)).applyQuaternion(rotation(at).invert());
 
 /** And back. */
-export function inScene(local: THREE.Vector3, { p_m: p, q }: Pick<ToolFrame, 'p_m' | 'q'>): THREE.Vector3 {
-  const turn = new THREE.Quaternion(q[1], q[2], q[3], q[0]).normalize();
-  return local
-    .clone()
-    .applyQuaternion(turn)
-    .add(new THREE.Vector3(p[0], p[1], p[2]));
-}
+export const inScene = (local: THREE.Vector3, at: PoseFrame): THREE.Vector3 =>
+  local.clone().applyQuaternion(rotation(at)).add(position(at));

@@ -8,7 +8,6 @@ import { Desk } from './desk';
 import { Listener } from './listener';
 import type { SoundReport } from './meter';
 import { browserStore, readSettings, type SoundSettings, writeSettings } from './settings';
-import type { TissueNear } from './surroundings';
 
 const gestures = ['pointerdown', 'keydown', 'touchend'] as const;
 
@@ -17,8 +16,8 @@ export class Sound {
   private context: AudioContext | null = null;
   private desk: Desk | null = null;
   private listener: Listener | null = null;
-  /** The scene; a listener to it is made when there is something to hear. */
-  private scene: { bundle: Bundle; tissue: TissueNear } | null = null;
+  /** The scene. A listener to it is made when sound is on, since it takes a moment. */
+  private scene: Bundle | null = null;
 
   /** changed: the settings, or whether the audio runs. */
   constructor(
@@ -29,18 +28,19 @@ export class Sound {
     document.addEventListener('visibilitychange', () => this.follow());
   }
 
-  begin(bundle: Bundle, tissue: TissueNear): void {
+  begin(bundle: Bundle): void {
     this.desk?.silence();
     this.listener = null;
-    this.scene = { bundle, tissue };
+    this.scene = bundle;
+    if (this.settings.on) this.listen();
   }
 
   event(m: SimEvent, arrivedMs: number): void {
-    if (this.sounds) this.listening?.event(m, this.desk!, arrivedMs);
+    if (this.sounds) this.listener?.event(m, this.desk!, arrivedMs);
   }
 
   frame(m: RenderFrame, arrivedMs: number): void {
-    if (this.sounds) this.listening?.frame(m, this.desk!, arrivedMs);
+    if (this.sounds) this.listener?.frame(m, this.desk!, arrivedMs);
   }
 
   clocks(timers: readonly TimerView[]): void {
@@ -71,9 +71,8 @@ export class Sound {
     return this.wanted && this.desk !== null && this.context?.state === 'running';
   }
 
-  private get listening(): Listener | null {
-    if (this.scene) this.listener ??= new Listener(this.scene.bundle, this.scene.tissue);
-    return this.listener;
+  private listen(): void {
+    if (this.scene) this.listener ??= new Listener(this.scene);
   }
 
   private get wanted(): boolean {
@@ -84,6 +83,7 @@ export class Sound {
   private gesture(): void {
     if (!this.wanted || this.context?.state === 'running') return;
     this.context ??= this.open();
+    this.listen();
     this.follow();
   }
 

@@ -2,7 +2,7 @@
 // A strand or a piece of membrane parts. Cut by an edge it is a short bright snip; torn it is a longer, lower and
 // louder rip, since tearing is a fault:
 //
-//   cut    high-passed noise above 4 kHz, falls by 60 dB in 30 ms
+//   cut    band-passed noise about 5 kHz that falls by 60 dB in 35 ms
 //   torn   band-passed noise that falls from 1000 to 350 Hz, in crackles that follow each other ever faster (fibre by
 //          fibre, the rest gives way sooner), over a thud that falls from 150 to 70 Hz
 import { burst, dying, noiseSource } from '../envelope';
@@ -15,7 +15,7 @@ const ripS = 0.17;
 
 /** vary: -1 to 1, another pitch and strength each time. */
 export function part(place: Place, at: number, how: Parting, vary: number): void {
-  if (how === 'cut') burst(place, at, { type: 'highpass', hz: 4000 + 800 * vary, q: 0.7, peak: 0.085, fallS: 0.03 });
+  if (how === 'cut') burst(place, at, { type: 'bandpass', hz: 5000 + 800 * vary, q: 0.9, peak: 0.18, fallS: 0.035 });
   else tear(place, at, vary);
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A suction tube, by what it draws:
 //
-//   air        an even hiss about 2.4 kHz: turbulence at the opening
+//   air        an even hiss about 1.7 kHz: turbulence at the opening
 //   fluid      a gurgle about 600 Hz, uneven, with bubbles: slugs of fluid and air in the tube
-//   tissue     a dull hum about 170 Hz: the opening is closed, and only the pump is heard
+//   tissue     a dull hum about 240 Hz: the opening is closed, and only the pump is heard
 import { HeldNoise, type Timbre } from '../held_noise';
 import type { Place } from '../mixer';
 import { drip } from './drop';
@@ -11,9 +11,9 @@ import { drip } from './drop';
 export type Drawn = 'air' | 'fluid' | 'tissue';
 
 export const timbres: Record<Drawn, Timbre> = {
-  air: { hz: 2400, q: 0.5, level: 0.05, depth: 0.06 },
+  air: { hz: 1700, q: 0.7, level: 0.055, depth: 0.06 },
   fluid: { hz: 600, q: 1, level: 0.16, depth: 0.9 },
-  tissue: { hz: 170, q: 2.2, level: 0.26, depth: 0.15 },
+  tissue: { hz: 240, q: 1.8, level: 0.2, depth: 0.15 },
 };
 
 /** Bubbles a second while it draws fluid. */
