@@ -103,6 +103,12 @@ describe('hits of instruments', () => {
     expect(found).toEqual([]);
   });
 
+  it('say nothing about speed over a gap in time', () => {
+    const impacts = new Impacts(scene());
+    impacts.read(frame(0, [place(0, 0, 0.03)]));
+    expect(impacts.read(frame(60, [place(0, 0, 0.001)], [[0, 0, 0.001]]))).toEqual([]);
+  });
+
   it('begin anew after a reset', () => {
     const impacts = new Impacts(scene());
     comeDown(impacts, 100);

@@ -109,7 +109,7 @@ export class Hud {
     this.hands = [0, 1].map((h) => new HandPanel(h, actions, mayDrive));
     this.toolList = new ToolList((c) => actions.run(c), mayDrive);
     this.view = new ViewMenu(actions);
-    this.sound = new SoundPanel(actions);
+    this.sound = new SoundPanel(actions, 'M');
     this.inventory = new InventoryPanel((item) => actions.chooseItem(item));
     this.instructor = role === 'instructor' ? new InstructorPanel((c) => actions.run(c)) : null;
     this.view.quality.value = quality;

@@ -11,7 +11,7 @@ export interface SoundActions {
 
 export class SoundPanel {
   readonly root = el('div', { class: 'controls sound', role: 'group', 'aria-label': 'sound' });
-  private readonly toggle = el('button', { title: 'sound on or off (M)' });
+  private readonly toggle = el('button');
   private readonly volume = el('input', {
     ...{ type: 'range', min: '0', max: '1', step: '0.05' },
     ...{ title: 'volume', 'aria-label': 'volume of the sound' },
@@ -22,7 +22,12 @@ export class SoundPanel {
   }));
   private settings: SoundSettings | null = null;
 
-  constructor(private readonly actions: SoundActions) {
+  /** key: that switches sound on and off; '': none does. */
+  constructor(
+    private readonly actions: SoundActions,
+    key: string,
+  ) {
+    this.toggle.title = `sound on or off${key === '' ? '' : ` (${key})`}`;
     this.toggle.onclick = () => this.toggleSound();
     this.volume.oninput = () => actions.sound({ volume: Number(this.volume.value) });
     for (const { group, button } of this.groups)

@@ -21,6 +21,8 @@ const fullSpeed = 0.15;
 const leastSpeed = 0.004;
 /** The engine takes speed away before a contact: the fastest of this long before counts, s. */
 const beforeS = 0.08;
+/** Frames that came farther apart say nothing about speed, s. */
+const gapS = 0.25;
 
 export interface Impact {
   partner: Partner;
@@ -111,7 +113,7 @@ export class Impacts {
     for (const p of [...this.past].reverse()) {
       const was = p.tools.get(tool.index);
       const otherWas = other ? p.tools.get(other.index) : null;
-      if (!was || (other && !otherWas)) break;
+      if (!was || (other && !otherWas) || now - p.timeS > gapS) break;
       // From the other side's point to the tool's: zero now, since they touch.
       const gap = inScene(on, was).sub(onOther && otherWas ? inScene(onOther, otherWas) : point);
       fastest = Math.max(fastest, gap.distanceTo(later) / (laterS - p.timeS));

@@ -19,6 +19,9 @@ import { bubbleRate } from './voices/suction';
 /** Of simulated time between two frames; more was lost or skipped, s. */
 const longestS = 0.2;
 
+/** Of an event. */
+export type Heard = Pick<SimEvent, 'kind' | 'sim_time_s'>;
+
 export class Listener {
   private readonly channels: Channels;
   private readonly pulse: string;
@@ -45,7 +48,7 @@ export class Listener {
     this.surroundings = new Surroundings(bundle);
   }
 
-  event({ kind, sim_time_s: timeS }: Pick<SimEvent, 'kind' | 'sim_time_s'>, desk: Desk, arrivedMs: number): void {
+  event({ kind, sim_time_s: timeS }: Heard, desk: Desk, arrivedMs: number): void {
     if (kind === 'reset') this.restart(desk);
     const sound = soundOf(kind);
     if (!sound) return;

@@ -3,9 +3,9 @@
 // with the first key or click after sound was switched on. It rests while the page is hidden.
 import type { Bundle } from '../bundle_types';
 import type { TimerView } from '../hud/state';
-import type { RenderFrame, SimEvent } from '../lcm';
+import type { RenderFrame } from '../lcm';
 import { Desk } from './desk';
-import { Listener } from './listener';
+import { type Heard, Listener } from './listener';
 import type { SoundReport } from './meter';
 import { browserStore, readSettings, type SoundSettings, writeSettings } from './settings';
 
@@ -35,7 +35,7 @@ export class Sound {
     if (this.settings.on) this.listen();
   }
 
-  event(m: SimEvent, arrivedMs: number): void {
+  event(m: Heard, arrivedMs: number): void {
     if (this.sounds) this.listener?.event(m, this.desk!, arrivedMs);
   }
 
