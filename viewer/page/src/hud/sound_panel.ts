@@ -18,7 +18,15 @@ export class SoundPanel {
   });
   private readonly groups = groups.map((group) => ({
     group,
-    button: el('button', { title: `sound: ${groupNames[group]}`, 'data-group': group }, groupNames[group]),
+    button: el(
+      'button',
+      {
+        title: `sounds of ${groupNames[group].whole}`,
+        'aria-label': `sounds of ${groupNames[group].whole}`,
+        'data-group': group,
+      },
+      groupNames[group].short,
+    ),
   }));
   private settings: SoundSettings | null = null;
 

@@ -98,7 +98,7 @@ export class Replay {
     this.showMoments(window.innerWidth > narrowPx);
     hud.append(right, this.notes.root, this.transport.root, warning, this.toast);
     hud.parentElement!.dataset.sides = String(sides.length);
-    this.first.left.append(this.sound.root);
+    this.first.left.firstElementChild!.after(this.sound.root);
     returnFocusToField(hud, view.stage.canvas);
     (window as unknown as { __replay: ReplayStatus }).__replay = this.status;
     window.addEventListener('keydown', (e) => this.key(e));

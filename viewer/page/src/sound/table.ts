@@ -7,10 +7,10 @@ import type { ChannelData, DrawableData, MaterialData } from '../step_data/decla
 export const groups = ['monitor', 'instruments', 'alarms'] as const;
 export type Group = (typeof groups)[number];
 
-export const groupNames: Record<Group, string> = {
-  monitor: 'Patient monitor',
-  instruments: 'Instruments and field',
-  alarms: 'Alarms',
+export const groupNames: Record<Group, { short: string; whole: string }> = {
+  monitor: { short: 'Monitor', whole: 'patient monitor' },
+  instruments: { short: 'Instruments', whole: 'instruments and field' },
+  alarms: { short: 'Alarms', whole: 'alarms' },
 };
 
 export type Voice = 'heart' | 'clip' | 'strand' | 'contact' | 'drop' | 'suction' | 'alarm';
