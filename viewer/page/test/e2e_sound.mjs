@@ -198,10 +198,11 @@ async function settings(page, mock) {
     labels: [...document.querySelectorAll('.sound input')].map((b) => b.getAttribute('aria-label')),
   }));
   assert.deepEqual(seen, { volume: '0.5', pressed: ['true', 'false', 'true'], labels: ['volume of the sound'] });
-  await page.mouse.click(320, 240);
+  await page.keyboard.press('m');
   await page.waitForFunction(() => window.__insula.sound.running && window.__tap.ready, null, patience);
+  assert.equal(await textOf(page), '♪ Sound on');
   await press('.sound [data-group=instruments]');
-  check('a group that is off is silent; the choice is remembered, and a click begins the sound again');
+  check('a group that is off is silent; the choice is remembered, and a key begins the sound again');
 }
 
 /** Engine, haptic server and gateway, the last one with the page that was built here. */

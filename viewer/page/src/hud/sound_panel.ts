@@ -9,6 +9,9 @@ export interface SoundActions {
   sound(change: Partial<SoundSettings>): void;
 }
 
+/** The key or the click that the sound has waited for comes here too, within this time, ms. */
+const sameGestureMs = 600;
+
 export class SoundPanel {
   readonly root = el('div', { class: 'controls sound', role: 'group', 'aria-label': 'sound' });
   private readonly toggle = el('button');
@@ -29,6 +32,8 @@ export class SoundPanel {
     ),
   }));
   private settings: SoundSettings | null = null;
+  private waits = false;
+  private beganMs = -Infinity;
 
   /** key: that switches sound on and off; '': none does. */
   constructor(
@@ -46,13 +51,17 @@ export class SoundPanel {
     this.root.append(this.toggle, this.volume, ...this.groups.map((g) => g.button));
   }
 
+  /** What begins the sound that has waited does not end it. */
   toggleSound(): void {
-    if (this.settings) this.actions.sound({ on: !this.settings.on });
+    const begins = this.waits || performance.now() - this.beganMs < sameGestureMs;
+    if (this.settings) this.actions.sound({ on: begins || !this.settings.on });
   }
 
   /** waits: it is on, and the browser waits for a key or a click on the page. */
   show(settings: SoundSettings, waits: boolean): void {
+    if (this.waits && !waits) this.beganMs = performance.now();
     this.settings = settings;
+    this.waits = waits;
     const { on } = settings;
     setText(this.toggle, !on ? '♪ Sound off' : waits ? '♪ Sound: press a key' : '♪ Sound on');
     this.toggle.setAttribute('aria-pressed', String(on));
