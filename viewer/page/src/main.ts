@@ -24,9 +24,10 @@ import { parseOptions, type QualityName } from './options';
 import { Pace } from './pace';
 import { Playback } from './playback';
 import { levels, QualityWatch } from './quality';
-import { listenForShortcuts } from './shortcuts';
+import { listenForPageKeys } from './page_keys';
 import { silent } from './silence';
 import { softwareAdvice } from './software_rendering';
+import { Sound } from './sound/sound';
 import { Stage } from './stage';
 import { status, tellPicture } from './status';
 import type { RunGhost } from './replay/run_ghost';
@@ -66,6 +67,7 @@ const link = new Connection(socketUrl(location.href, options.role), {
     if (!world || world.bundle.session !== m.session.toString()) return;
     heard.frame = performance.now();
     if (status.frozen) return;
+    sound.frame(m, heard.frame);
     playback.push(m, performance.now());
     if (options.freezeAtS !== null && m.sim_time_s >= options.freezeAtS) status.frozen = true;
   },
@@ -78,6 +80,7 @@ const link = new Connection(socketUrl(location.href, options.role), {
     if (m.kind === 'message') spokenTo = m.text;
     // The hands are at home again; what the mouse held before is not taken back there.
     if (m.kind === 'reset' && !ownReset.met(performance.now())) letHandsGo();
+    sound.event(m, performance.now());
     hud.showEvent(m, performance.now());
   },
   metrics: (m) => {
@@ -93,6 +96,7 @@ const link = new Connection(socketUrl(location.href, options.role), {
     status.connected = open;
     if (open) return;
     info = null;
+    sound.lost();
     hands.releaseAll();
   },
 });
@@ -110,6 +114,7 @@ const hud = new Hud(
   canvas,
   {
     run,
+    sound: (change) => sound.choose(change),
     stereo: (mode) => modes.setStereo(mode, true),
     angle: (deg) => modes.setAngle(deg),
     infrared: (on) => modes.setInfrared(on),
@@ -134,6 +139,8 @@ const hud = new Hud(
   options.role,
   options.quality ?? '',
 );
+const sound: Sound = new Sound(status.sound, () => hud.sound.show(sound.settings, sound.waits));
+hud.sound.show(sound.settings, sound.waits);
 const headset: Headset = new Headset(stage.renderer, () => modes.setStereo('off'));
 const modes: ViewModes = new ViewModes(options, headset, {
   infrared: (on) => {
@@ -182,18 +189,7 @@ function letHandsGo(): void {
   guiding.restart();
 }
 
-listenForShortcuts({
-  u: () => modes.toggleDepth(),
-  k: () => modes.nextRuler(),
-  l: () => hud.toggleToolList(),
-  i: () => modes.setInfrared(!modes.infrared),
-  j: () => hud.view.askGlow(),
-  o: () => modes.nextStereo(),
-  m: () => hud.vitals.toggleSound(),
-  n: (shift) => guiding.step(hands.active, shift ? -1 : 1),
-  '[': () => modes.setAngle(modes.angleDeg - 0.5),
-  ']': () => modes.setAngle(modes.angleDeg + 0.5),
-});
+listenForPageKeys({ modes, hud, guiding, hands });
 
 function build(bundle: Bundle): void {
   world?.dispose();
@@ -228,6 +224,7 @@ async function follow(m: SceneInfo): Promise<void> {
     scope.setHome(bundle.view);
     build(bundle);
     reading.begin(bundle);
+    sound.begin(bundle);
     hud.showScene(bundle);
     status.session = session;
     loadError = status.error = '';
@@ -259,6 +256,7 @@ function draw(now: number): void {
   controllers.move(headset.controllers);
   stage.update(Math.min(0.1, pictureMs / 1000), modes.stereo, presenting);
   reading.read(playback.latest);
+  if (reading.state) sound.clocks(reading.state.timers);
   const within = playback.latest ? takeBack.nearest(playback.latest) : null;
   if (world) {
     world.cues.choice = { plumb: modes.depth, ruler: modes.ruler, hand: hands.active, within };

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the page tells tests and screenshots about itself, as window.__insula.
+import { freshReport } from './sound/meter';
+
 export const status = {
   ready: false,
   frames: 0,
@@ -30,6 +32,8 @@ export const status = {
   infrared: false,
   presenting: false,
   graphics_lost: false,
+  /** What was heard, and how late. */
+  sound: freshReport(),
   /** By hand: whether its buttons are on. */
   buttons: [
     [false, false],

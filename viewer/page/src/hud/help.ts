@@ -19,7 +19,7 @@ const rows: [string, string][] = [
   ['O, [ ]', 'stereo: off, side by side, red-cyan; less, more depth'],
   ['U', 'depth: plumb line from the tip to the tissue, on or off'],
   ['K', 'ruler from the tip to the tissue: along the tool, along the line of sight, off'],
-  ['M', 'beep with the heart'],
+  ['M', 'sound on or off'],
   ['G', 'give the hand back: its buttons go off and it glides home'],
   ['N, Shift + N', 'next, previous target while you practise'],
   ['Y', 'while you practise: turn the tool slowly as the target is turned; its tip stays'],

@@ -22,16 +22,17 @@ import { InventoryPanel } from './inventory_panel';
 import type { Metrics } from './metrics';
 import { NoticePanel } from './notice';
 import { SessionPanel } from './session_panel';
+import { type SoundActions, SoundPanel } from './sound_panel';
 import type { HudState } from './state';
 import { Tabs } from './tabs';
 import { Toasts } from './toasts';
+import { makeTouch, type TouchActions } from './touch';
 import { ToolList } from './tool_list';
 import { short } from './tray';
 import { type ViewActions, ViewMenu } from './view_menu';
 import { Vitals } from './vitals';
 
-export interface HudActions extends ViewActions, HandActions {
-  button(button: 1 | 2, on: boolean): void;
+export interface HudActions extends ViewActions, HandActions, SoundActions, TouchActions {
   /** Of a scene that is looked at: highlights it; null: nothing. */
   chooseItem(item: InventoryItem | null): void;
   /** To another target of the guide. */
@@ -65,8 +66,9 @@ export class Hud {
   readonly session: SessionPanel;
   private readonly help: Help;
   readonly view: ViewMenu;
-  readonly vitals = new Vitals();
+  readonly sound: SoundPanel;
   readonly toolList: ToolList;
+  private readonly vitals = new Vitals();
   private readonly exercise = new ExercisePanel();
   private readonly toasts = new Toasts();
   private readonly instructor: InstructorPanel | null;
@@ -107,6 +109,7 @@ export class Hud {
     this.hands = [0, 1].map((h) => new HandPanel(h, actions, mayDrive));
     this.toolList = new ToolList((c) => actions.run(c), mayDrive);
     this.view = new ViewMenu(actions);
+    this.sound = new SoundPanel(actions, 'M');
     this.inventory = new InventoryPanel((item) => actions.chooseItem(item));
     this.instructor = role === 'instructor' ? new InstructorPanel((c) => actions.run(c)) : null;
     this.view.quality.value = quality;
@@ -118,6 +121,7 @@ export class Hud {
       this.toolList.root,
       this.makeControls(actions),
       this.view.root,
+      this.sound.root,
     );
     const warning = el('span', { class: 'warn' }, 'For training only. Not for patient care.');
     const notices = el('div', { class: 'notices' }, this.notice.root, this.problems.root);
@@ -308,16 +312,4 @@ export class Hud {
     help.onclick = () => this.toggleHelp();
     return el('div', { class: 'controls' }, ...(this.role === 'observer' ? [] : [this.pause, reset]), help);
   }
-}
-
-/** Buttons of a touch screen. */
-function makeTouch(actions: HudActions): HTMLElement {
-  const touch = el('div', { class: 'touch' });
-  for (const b of [1, 2] as const) {
-    const button = el('button', {}, b === 1 ? 'Act' : 'Button 2');
-    button.onpointerdown = () => actions.button(b, true);
-    button.onpointerup = button.onpointerleave = button.onpointercancel = () => actions.button(b, false);
-    touch.append(button);
-  }
-  return touch;
 }

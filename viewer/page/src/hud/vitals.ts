@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The patient's monitor: the pulse, with a soft beep if wanted, and the channels that a scene shows as vital signs.
-// Channels of a group are a row of a table with the names as columns. The others follow their component's name, and a
-// number among them that is not known takes no room.
+// The patient's monitor: the pulse, and the channels that a scene shows as vital signs. Channels of a group are a row
+// of a table with the names as columns. The others follow their component's name, and a number among them that is not
+// known takes no room.
 import type { Bundle } from '../bundle_types';
 import { spoken } from '../bundle';
 import {
@@ -49,22 +49,16 @@ export class Vitals {
   readonly root = el('section', { class: 'panel vitals' });
   private readonly beat = el('span', { class: 'beat', title: 'heartbeat' }, '♥');
   private readonly rate = el('span', { class: 'rate' });
-  private readonly sound = el('button', { title: 'beep with the heart (M)', 'aria-pressed': 'false' }, '♪');
   /** Numbers of the component that beats. */
   private readonly beside = el('span', { class: 'beside' });
-  private readonly head = el('header', {}, el('span', {}, this.beat, this.rate), this.beside, this.sound);
+  private readonly head = el('header', {}, el('span', {}, this.beat, this.rate), this.beside);
   private readonly parts = el('div');
   private components: { id: string; root: HTMLElement; cells: Cell[] }[] = [];
   private pulseChannel = '';
   private phase: number | null = null;
   private beats: number[] = [];
-  private audio: AudioContext | null = null;
-  private loud = false;
 
   constructor() {
-    this.sound.onclick = () => {
-      this.toggleSound();
-    };
     this.root.append(this.head, this.parts);
     this.root.hidden = true;
   }
@@ -80,12 +74,6 @@ export class Vitals {
     this.parts.replaceChildren(...this.components.filter((c) => c.id !== beating).map((c) => c.root));
     this.head.hidden = this.pulseChannel === '';
     this.root.hidden = this.components.length === 0 && this.pulseChannel === '';
-  }
-
-  toggleSound(): void {
-    this.loud = !this.loud;
-    this.sound.setAttribute('aria-pressed', String(this.loud));
-    if (this.loud) this.audio ??= new AudioContext();
   }
 
   /** stowed: components that are tools on the tray; nobody looks at their numbers. */
@@ -111,7 +99,6 @@ export class Vitals {
     // At a few pictures a second beats are missed: then no number is better than a wrong one.
     const rate = n > 2 ? (60 * (n - 1)) / Math.max(0.1, this.beats[n - 1]! - this.beats[0]!) : 0;
     setText(this.rate, rate > 30 && rate < 220 ? `${Math.round(rate)} /min` : '');
-    if (this.loud && this.audio) beep(this.audio);
   }
 
   private makeComponent(
@@ -169,16 +156,4 @@ function showCell({ channel, text, bar, row, write, mayHide }: Cell, channels: C
   setText(text, write(channel, value));
   if (bar) bar.style.width = `${100 * barShare(channel, value)}%`;
   row.dataset.level = level(channel, value);
-}
-
-function beep(audio: AudioContext): void {
-  const tone = audio.createOscillator();
-  const loudness = audio.createGain();
-  tone.frequency.value = 620;
-  loudness.gain.setValueAtTime(0, audio.currentTime);
-  loudness.gain.linearRampToValueAtTime(0.05, audio.currentTime + 0.01);
-  loudness.gain.exponentialRampToValueAtTime(0.0005, audio.currentTime + 0.11);
-  tone.connect(loudness).connect(audio.destination);
-  tone.start();
-  tone.stop(audio.currentTime + 0.12);
 }

@@ -9,6 +9,7 @@ import { debrief } from './debrief';
 import { ReplayClock } from './clock';
 import { MomentsPanel } from './moments_panel';
 import { Notes } from './notes';
+import { ReplaySound } from './replay_sound';
 import { Rest } from './rest';
 import type { RecordedSession } from './session';
 import type { Side } from './side';
@@ -45,6 +46,7 @@ export class Replay {
   private readonly first: Side;
   private jumpedMs: number | null = null;
   private readonly status = freshStatus();
+  private readonly sound = new ReplaySound(this.status.sound);
 
   /** kept: notes are kept beside the recording. */
   constructor(
@@ -96,6 +98,7 @@ export class Replay {
     this.showMoments(window.innerWidth > narrowPx);
     hud.append(right, this.notes.root, this.transport.root, warning, this.toast);
     hud.parentElement!.dataset.sides = String(sides.length);
+    this.first.left.firstElementChild!.after(this.sound.root);
     returnFocusToField(hud, view.stage.canvas);
     (window as unknown as { __replay: ReplayStatus }).__replay = this.status;
     window.addEventListener('keydown', (e) => this.key(e));
@@ -178,6 +181,7 @@ export class Replay {
     await Promise.all(this.sides.map((s) => s.seek(timeS)));
     const decodeMs = performance.now() - from;
     for (const s of this.sides) s.view.draw(now, Math.min(0.1, dtS), { settled: !this.clock.playing, soon });
+    this.sound.picture(this.first.view, this.clock, this.first.session.timeline.events);
     if (jumpedMs === null) this.showPanels(timeS);
     else {
       // A browser that draws by software draws panels with the same threads as the picture.

@@ -11,6 +11,7 @@ import { SessionView } from './session_view';
 
 export class Side {
   readonly root: HTMLElement;
+  readonly left: HTMLElement;
   readonly view: SessionView;
   /** Added to the time of the page. */
   shiftS = 0;
@@ -25,8 +26,8 @@ export class Side {
   ) {
     const canvas = el('canvas', { tabindex: '0', 'aria-label': `recorded field of ${session.name}` });
     const name = el('h1', { class: 'session-name' }, session.name, el('small', {}, session.began));
-    const left = el('div', { class: 'column left' }, name, this.vitals.root, this.exercise.root, this.problem);
-    this.root = el('div', { class: 'side' }, canvas, left);
+    this.left = el('div', { class: 'column left' }, name, this.vitals.root, this.exercise.root, this.problem);
+    this.root = el('div', { class: 'side' }, canvas, this.left);
     this.view = new SessionView(canvas, quality);
     controlMicroscope(this.view.stage);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a replay tells tests and screenshots about itself, as window.__replay.
+import { freshReport, type SoundReport } from '../sound/meter';
 
 export interface ReplayStatus {
   ready: boolean;
@@ -19,6 +20,8 @@ export interface ReplayStatus {
   timeline_chunks: number;
   chunks_unpacked_to_open: number;
   seek_chunks_max: number;
+  /** What was heard. */
+  sound: SoundReport;
 }
 
 export const freshStatus = (): ReplayStatus => ({
@@ -35,4 +38,5 @@ export const freshStatus = (): ReplayStatus => ({
   timeline_chunks: 0,
   chunks_unpacked_to_open: 0,
   seek_chunks_max: 0,
+  sound: freshReport(),
 });

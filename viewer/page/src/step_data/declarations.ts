@@ -53,6 +53,8 @@ export interface DrawableData {
   material: string;
   /** Polylines only. */
   pointsPerLine: number;
+  /** Planes only: id of the channel with the rate at which fluid comes in; "": none. */
+  rateChannel: string;
   /** Elements of the first frame; may change. */
   count: number;
   radiusM: number;
@@ -195,6 +197,7 @@ export function parseDrawables(json: unknown): DrawableData[] {
       material: text(d.material),
       pointsPerLine,
       meshes,
+      rateChannel: text(d.rate_channel),
       count: Math.max(0, finite(d.count) ?? 0),
       radiusM: Math.max(0, finite(d.radius_m) ?? 0) || 0.0003,
       value: { doc: text(value.doc), unit: text(value.unit), min: finite(value.min), max: finite(value.max) },

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is heard of what: the only place that joins kinds of events, tools, materials and declared data with voices.
+// Nothing here names a part of a scene. A plugin that emits one of these kinds, or declares such data, is heard.
+import type { ChannelData, DrawableData, MaterialData } from '../step_data/declarations';
+
+/** What can be switched on and off by itself. */
+export const groups = ['monitor', 'instruments', 'alarms'] as const;
+export type Group = (typeof groups)[number];
+
+export const groupNames: Record<Group, { short: string; whole: string }> = {
+  monitor: { short: 'Monitor', whole: 'patient monitor' },
+  instruments: { short: 'Instruments', whole: 'instruments and field' },
+  alarms: { short: 'Alarms', whole: 'alarms' },
+};
+
+export type Voice = 'heart' | 'clip' | 'strand' | 'contact' | 'drop' | 'suction' | 'alarm';
+
+/** A voice's group, and how many of it may begin within a stretch of time. */
+export const voices: Record<Voice, { group: Group; most: number; withinS: number }> = {
+  heart: { group: 'monitor', most: 1, withinS: 0.2 },
+  clip: { group: 'instruments', most: 4, withinS: 0.25 },
+  strand: { group: 'instruments', most: 4, withinS: 0.15 },
+  contact: { group: 'instruments', most: 4, withinS: 0.15 },
+  drop: { group: 'instruments', most: 6, withinS: 0.25 },
+  suction: { group: 'instruments', most: 8, withinS: 0.25 },
+  alarm: { group: 'alarms', most: 2, withinS: 1 },
+};
+
+export type Parting = 'cut' | 'torn';
+export type ClipSound = 'shut' | 'released' | 'taken' | 'loaded';
+/** As IEC 60601-1-8 has them. */
+export type Priority = 'low' | 'medium' | 'high';
+
+interface EventSound {
+  strand?: Parting;
+  clip?: ClipSound;
+  alarm?: Priority;
+}
+
+/** By kind of event. What is not here is not heard. */
+export const eventSounds: Readonly<Record<string, EventSound>> = {
+  strand_cut: { strand: 'cut' },
+  strand_torn: { strand: 'torn' },
+  membrane_cut: { strand: 'cut' },
+  membrane_torn: { strand: 'torn' },
+  vein_parted: { strand: 'torn', alarm: 'medium' },
+  perforator_torn: { strand: 'torn', alarm: 'high' },
+  perforator_shut: { alarm: 'medium' },
+  clip_shut: { clip: 'shut' },
+  clip_released: { clip: 'released' },
+  clip_taken: { clip: 'taken' },
+  clip_loaded: { clip: 'loaded' },
+  rupture: { alarm: 'high' },
+  bleeding_again: { alarm: 'high' },
+  fault: { alarm: 'low' },
+};
+
+export const soundOf = (kind: string): EventSound | null =>
+  Object.hasOwn(eventSounds, kind) ? eventSounds[kind]! : null;
+
+/** A vital sign that declares its limits raises an alarm of this priority when it is far outside. */
+export const channelAlarm: Priority = 'medium';
+export const hasLimits = (c: ChannelData): boolean => c.shown === 'vital' && c.bands !== null;
+
+/** A running clock of the exercise that has passed its limit. */
+export const clockAlarm: Priority = 'high';
+
+/** What sucks while it is active, by its kind. */
+export const suctionKinds: ReadonlySet<string> = new Set(['suction']);
+
+/** Stiff enough to be heard when an instrument hits it, by the material of what stands still. */
+export const hardMaterials: ReadonlySet<string> = new Set(['bone', 'steel', 'steel_dark', 'titanium', 'polymer']);
+
+/** A body of fluid, such as a pool in the field. */
+export const isPool = (d: DrawableData, materials: ReadonlyMap<string, MaterialData>): boolean =>
+  d.kind === 'plane' && materials.get(d.material)?.style === 'fluid';
+
+/** The channel whose value tells how fast fluid comes into a pool, by its declaration; '': none. */
+export const inflowOf = (d: DrawableData, materials: ReadonlyMap<string, MaterialData>): string =>
+  isPool(d, materials) ? d.rateChannel : '';
+
+/** The pressure of what beats: a vital sign in pascals of the component that has the pulse; null: there is none. */
+export function pressureOfPulse(channels: readonly ChannelData[], pulseChannel: string): ChannelData | null {
+  const pulse = channels.find((c) => c.id === pulseChannel);
+  const vital = (c: ChannelData) => c.component === pulse?.component && c.shown === 'vital' && c.unit === 'Pa';
+  return channels.find(vital) ?? null;
+}

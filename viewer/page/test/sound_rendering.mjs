@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs in the page: renders each voice through the mixer at full volume, without a sound card, and measures it.
+import { Mixer } from '../src/sound/mixer';
+import { AlarmVoice } from '../src/sound/voices/alarm';
+import { BleedingVoice } from '../src/sound/voices/bleeding';
+import { click } from '../src/sound/voices/clip';
+import { hit } from '../src/sound/voices/contact';
+import { drip } from '../src/sound/voices/drop';
+import { beep } from '../src/sound/voices/heart';
+import { part } from '../src/sound/voices/strand';
+import { SuctionVoice } from '../src/sound/voices/suction';
+import { centroid, lastLoud, onsets, peak, rms, spectrum, strongest } from './sound_measures.mjs';
+
+const rate = 48000;
+const mmHg = 133.322;
+const on = { monitor: true, instruments: true, alarms: true };
+
+async function render(seconds, play, groups = on) {
+  const context = new OfflineAudioContext(1, seconds * rate, rate);
+  const mixer = new Mixer(context);
+  mixer.set(1, groups);
+  play((group) => mixer.place(group), context);
+  return (await context.startRendering()).getChannelData(0);
+}
+
+/** From when it began, s, to its end. */
+function measure(x, fromS, windowS) {
+  const begin = Math.floor(fromS * rate);
+  const heard = x.subarray(begin, begin + Math.round(windowS * rate));
+  let n = 1024;
+  while (2 * n <= heard.length) n *= 2;
+  const power = spectrum(heard, n);
+  return {
+    peak: peak(x),
+    rms: rms(heard),
+    centroid_hz: centroid(power, rate),
+    strongest_hz: strongest(power, rate),
+    onsets: onsets(x, rate).map((t) => t - fromS),
+    last_s: lastLoud(x, rate) - fromS,
+    before: peak(x.subarray(0, begin)),
+    after: peak(x.subarray(x.length - Math.round(0.15 * rate))),
+  };
+}
+
+/** Gains glide at first; so every sound begins a little later. */
+const at = 0.2;
+
+const suck = (drawn) => async () => {
+  const x = await render(2, (place) => {
+    const voice = new SuctionVoice(place('instruments'));
+    // The lease is made longer for a second, as frames would do.
+    voice.play(drawn, at);
+  });
+  return measure(x, at + 0.1, 0.35);
+};
+
+const strike = (group, windowS, play) => async () =>
+  measure(await render(1.5, (place) => play(place(group))), at, windowS);
+
+const alarm = (priority) => async () => {
+  const x = await render(4, (place) => void new AlarmVoice(place('alarms')).sound(priority, at));
+  return measure(x, at + 0.02, 0.1);
+};
+
+export const cases = {
+  cut: strike('instruments', 0.25, (p) => part(p, at, 'cut', 0)),
+  torn: strike('instruments', 0.25, (p) => part(p, at, 'torn', 0)),
+  shut: strike('instruments', 0.15, (p) => click(p, at, 'shut')),
+  released: strike('instruments', 0.15, (p) => click(p, at, 'released')),
+  taken: strike('instruments', 0.15, (p) => click(p, at, 'taken')),
+  loaded: strike('instruments', 0.15, (p) => click(p, at, 'loaded')),
+  bone: strike('instruments', 0.1, (p) => hit(p, at, 'bone', 1, 0)),
+  bone_gently: strike('instruments', 0.1, (p) => hit(p, at, 'bone', 0.2, 0)),
+  instrument: strike('instruments', 0.1, (p) => hit(p, at, 'instrument', 1, 0)),
+  heart_60: strike('monitor', 0.12, (p) => beep(p, at, 60 * mmHg)),
+  heart_90: strike('monitor', 0.12, (p) => beep(p, at, 90 * mmHg)),
+  heart_120: strike('monitor', 0.12, (p) => beep(p, at, 120 * mmHg)),
+  small_drop: strike('instruments', 0.05, (p) => drip(p, at, 0, 0.04)),
+  large_drop: strike('instruments', 0.05, (p) => drip(p, at, 1, 0.04)),
+  air: suck('air'),
+  fluid: suck('fluid'),
+  tissue: suck('tissue'),
+  bleeding: async () => {
+    const x = await render(2, (place) => new BleedingVoice(place('instruments')).play(1e-6, at));
+    return measure(x, at + 0.1, 0.35);
+  },
+  low: alarm('low'),
+  medium: alarm('medium'),
+  high: alarm('high'),
+  /** Far more at once than the limits of the voices let through. */
+  everything: async () => {
+    const x = await render(2, (place) => {
+      for (let k = 0; k < 30; k++) {
+        part(place('instruments'), at, 'torn', 0);
+        hit(place('instruments'), at, 'bone', 1, 0);
+        beep(place('monitor'), at, null);
+      }
+      new AlarmVoice(place('alarms')).sound('high', at);
+    });
+    return measure(x, at, 0.2);
+  },
+  group_off: async () => {
+    const x = await render(
+      1,
+      (place) => {
+        beep(place('monitor'), at, null);
+        part(place('instruments'), at, 'torn', 0);
+      },
+      { monitor: false, instruments: false, alarms: true },
+    );
+    return measure(x, at, 0.2);
+  },
+  stopped: async () => {
+    const x = await render(1.5, (place) => {
+      const voice = new SuctionVoice(place('instruments'));
+      voice.play('air', at);
+      voice.stop(at + 0.3);
+    });
+    return measure(x, at, 0.3);
+  },
+};
