@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A force within a band that one hand must hold at a marked place of a soft body.
+#pragma once
+#include "plugins/skill_rules/skill_goal.h"
+
+namespace insula {
+
+class GoalHoldForce final : public SkillGoal {
+ public:
+  Ref<Body> on{this, {.name = "on", .doc = "body that is pressed or pulled"}};
+  Param<Force> least{
+      this, {.name = "least", .min = "0.1 mN", .max = "20 N", .doc = "smallest force of the hand that is good"}};
+  Param<Force> most{this, {.name = "most", .min = "0.1 mN", .max = "20 N", .doc = "largest force that is good"}};
+
+  Channel<Force> force{this,
+                       {.name = "force",
+                        .doc = "of the hand at the marked place, in its turn",
+                        .min = "0 N",
+                        .shown = Shown::curve,
+                        .display = "mN",
+                        .digits = 0}};
+
+  void prepare(PrepareContext& context) override {
+    SkillGoal::prepare(context);
+    if (!(least() < most())) error(context, most, "must be above least");
+  }
+  void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
+    SkillGoal::declare(context, simulation, log);
+    structure_ = std::size_t(std::max(0, structure_of(context, simulation, on, *on)));
+  }
+  void publish() override {
+    SkillGoal::publish();
+    force.set(turn() ? now_ : std::nan(""));
+  }
+  void reset() override {
+    SkillGoal::reset();
+    now_ = std::nan("");
+  }
+
+ protected:
+  bool good(const StepReport& report) override {
+    const bool there = distance(report) <= radius();
+    now_ = there ? of_hand(report) : 0;
+    return there && now_ >= least() && now_ <= most();
+  }
+  double deviation(const StepReport& report) const override {
+    return std::abs(of_hand(report) - 0.5 * (least() + most()));
+  }
+
+ private:
+  double of_hand(const StepReport& report) const {
+    return report.structures[structure_].of_hand[std::size_t(hand_index())].norm();
+  }
+
+  std::size_t structure_ = 0;  ///< among those of the report
+  double now_ = std::nan("");  ///< N
+};
+
+}  // namespace insula
