@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A force within a band that one hand must hold at a marked place of a soft body.
 #pragma once
+#include "plugins/skill_rules/ring.h"
 #include "plugins/skill_rules/skill_goal.h"
 
 namespace insula {
@@ -11,6 +12,8 @@ class GoalHoldForce final : public SkillGoal {
   Param<Force> least{
       this, {.name = "least", .min = "0.1 mN", .max = "20 N", .doc = "smallest force of the hand that is good"}};
   Param<Force> most{this, {.name = "most", .min = "0.1 mN", .max = "20 N", .doc = "largest force that is good"}};
+  Param<Vec<Scalar>> normal{
+      this, {.name = "normal", .fallback = "0 0 1", .doc = "out of the surface; the ring lies across it"}};
 
   Channel<Force> force{this,
                        {.name = "force",
@@ -20,8 +23,25 @@ class GoalHoldForce final : public SkillGoal {
                         .display = "mN",
                         .digits = 0}};
 
+  Marks<Polylines> ring{
+      this, {.value = "share of the hold that is done", .radius = "0.3 mm", .points_per_line = ring_points}};
+  Polylines held{this,
+                 {.name = "held",
+                  .doc = "part of a ring: the share of the hold that is done",
+                  .material = "place_reached",
+                  .value = "share of the hold that is done",
+                  .radius = "0.4 mm",
+                  .points_per_line = ring_points}};
+  Label reading{this,
+                {.name = "reading",
+                 .doc = "the force in its turn, to 5 mN; a dash before and after",
+                 .material = "place_reading",
+                 .value = "force",
+                 .unit = "N"}};
+
   void prepare(PrepareContext& context) override {
     SkillGoal::prepare(context);
+    if (normal().norm() < 1e-9) error(context, normal, "a direction must not be zero");
     if (!(least() < most())) error(context, most, "must be above least");
   }
   void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
@@ -31,6 +51,7 @@ class GoalHoldForce final : public SkillGoal {
   void publish() override {
     SkillGoal::publish();
     force.set(turn() ? now_ : std::nan(""));
+    reading.set(at() + 0.012 * normal().normalized(), turn() ? 0.005 * std::round(now_ / 0.005) : std::nan(""));
   }
   void reset() override {
     SkillGoal::reset();
@@ -38,6 +59,11 @@ class GoalHoldForce final : public SkillGoal {
   }
 
  protected:
+  void mark(Look look, double share) override {
+    draw_ring(ring.only(look), at(), normal(), radius(), 1, share);
+    if (look == Look::left || look == Look::right) draw_ring(held, at(), normal(), radius() + 0.8e-3, share, share);
+    else held.resize(0);
+  }
   bool good(const StepReport& report) override {
     const bool there = distance(report) <= radius();
     now_ = there ? of_hand(report) : 0;

@@ -27,6 +27,8 @@ class GoalTouch final : public SkillGoal {
                        .display = "mm",
                        .digits = 1}};
 
+  Marks<Points> ball{this, {.value = "share of the hold that is done", .radius = "1 mm"}};
+
   void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
     SkillGoal::declare(context, simulation, log);
     structure_.clear();
@@ -43,6 +45,11 @@ class GoalTouch final : public SkillGoal {
   }
 
  protected:
+  void mark(Look look, double share) override {
+    Points& shown = ball.only(look);
+    shown.resize(1);
+    shown.set(0, at(), share);
+  }
   bool good(const StepReport& report) override {
     now_ = distance(report);
     return now_ <= radius() && other_hand_holds(report);

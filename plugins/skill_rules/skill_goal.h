@@ -2,12 +2,42 @@
 // What the goals of skill tasks share: a marked place, the hand that goes there, and the goal that comes before.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/sim/exercise.h"
 #include "core/sim/simulation.h"
 
 namespace insula {
+
+/// How a place is drawn: before its turn, in its turn for either hand, and once its goal is reached.
+enum class Look { waiting, left, right, reached };
+
+/// A drawable for each look. One of them is shown.
+template <class D>
+class Marks {
+ public:
+  Marks(Component* owner, DrawableSpec spec)
+      : all_{D(owner, with(spec, "waiting", "the place before its turn", "place_waiting")),
+             D(owner, with(spec, "left", "the place while it is the left hand's turn", "place_of_left_hand")),
+             D(owner, with(spec, "right", "the place while it is the right hand's turn", "place_of_right_hand")),
+             D(owner, with(spec, "reached", "the place once the goal is reached", "place_reached"))} {}
+  D& operator[](Look look) { return all_[std::size_t(look)]; }
+  /// The one to be filled; the others show nothing.
+  D& only(Look look) {
+    for (D& d : all_) d.resize(0);
+    return (*this)[look];
+  }
+
+ private:
+  static DrawableSpec with(DrawableSpec spec, std::string_view name, std::string_view doc, std::string_view material) {
+    spec.name = name;
+    spec.doc = doc;
+    spec.material = material;
+    return spec;
+  }
+  std::array<D, 4> all_;
+};
 
 /// A place that one hand must attend to. It is drawn in the colour of its hand while its turn is on, pale before, and
 /// as reached afterwards.
@@ -29,31 +59,6 @@ class SkillGoal : public ExerciseRule {
   Ref<SkillGoal> after{this,
                        {.name = "after", .fallback = "", .doc = "goal that comes first; none: the turn is on at once"}};
 
-  Points waiting{this,
-                 {.name = "waiting",
-                  .doc = "the place before its turn",
-                  .material = "place_waiting",
-                  .value = "1",
-                  .radius = "0.9 mm"}};
-  Points now_left{this,
-                  {.name = "now_left",
-                   .doc = "the place while it is the left hand's turn",
-                   .material = "place_of_left_hand",
-                   .value = "share of the hold that is done",
-                   .radius = "1.2 mm"}};
-  Points now_right{this,
-                   {.name = "now_right",
-                    .doc = "the place while it is the right hand's turn",
-                    .material = "place_of_right_hand",
-                    .value = "share of the hold that is done",
-                    .radius = "1.2 mm"}};
-  Points reached_mark{this,
-                      {.name = "reached",
-                       .doc = "the place once the goal is reached",
-                       .material = "place_reached",
-                       .value = "1",
-                       .radius = "0.9 mm"}};
-
   void prepare(PrepareContext& context) override {
     const SkillGoal* g = after.get();
     for (int steps = 0; g && steps < 1000; ++steps) {
@@ -63,6 +68,7 @@ class SkillGoal : public ExerciseRule {
   }
   void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { goal_ = log.add_goal(id, text()); }
   void observe(const StepReport& report, ExerciseLog& log) final {
+    watch(report, log);
     if (!turn()) return;
     if (!good(report)) return restart();
     held_ += report.h;
@@ -72,12 +78,7 @@ class SkillGoal : public ExerciseRule {
     error_ = sum_ / held_;
     log.goal(goal_, report.time);
   }
-  void publish() override {
-    show(waiting, !reached_ && !turn(), 1);
-    show(now_left, turn() && hand.is("left"), share());
-    show(now_right, turn() && hand.is("right"), share());
-    show(reached_mark, reached_, 1);
-  }
+  void publish() override { mark(reached_ ? Look::reached : !turn() ? Look::waiting : look_of_hand(), share()); }
   void reset() override {
     restart();
     reached_ = false;
@@ -91,8 +92,12 @@ class SkillGoal : public ExerciseRule {
   int hand_index() const { return hand.is("right") ? 1 : 0; }
 
  protected:
+  /// Draws the place so. share: of the hold that is done.
+  virtual void mark(Look look, double share) = 0;
   /// Whether the condition holds at the end of the step.
   virtual bool good(const StepReport& report) = 0;
+  /// Sees every step, whosever turn it is.
+  virtual void watch(const StepReport&, ExerciseLog&) {}
   /// Of the step from what would be best.
   virtual double deviation(const StepReport& report) const = 0;
   /// Distance of the hand's tip from the place; infinite without a tool, m.
@@ -112,10 +117,7 @@ class SkillGoal : public ExerciseRule {
  private:
   void restart() { held_ = sum_ = 0; }
   double share() const { return hold() > 0 ? std::min(1.0, held_ / hold()) : 0; }
-  void show(Points& mark, bool on, double value) const {
-    mark.resize(on ? 1 : 0);
-    if (on) mark.set(0, at(), value);
-  }
+  Look look_of_hand() const { return hand.is("left") ? Look::left : Look::right; }
 
   int goal_ = 0;
   double held_ = 0, sum_ = 0;  ///< s; s times the unit of the deviation

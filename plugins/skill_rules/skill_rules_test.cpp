@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/model/formats/file_bytes.h"
 #include "core/testing/example.h"
 
 namespace insula {
@@ -34,7 +35,7 @@ class SkillRules : public ::testing::Test {
     }
   }
   bool done(std::size_t goal) const { return s->exercise()->log().goals()[goal].done; }
-  /// Number of marks of one kind: waiting, now_left, now_right, reached.
+  /// Number of marks of one kind: waiting, left, right, reached.
   int marks(const char* goal, const char* kind) {
     Component* rule = s->scene().find(goal);
     rule->publish();
@@ -117,15 +118,45 @@ TEST_F(SkillRules, TheForceMustStayInItsBandAtItsPlace) {
 }
 
 TEST_F(SkillRules, MarksShowWhoseTurnItIs) {
-  EXPECT_EQ(marks("target", "now_left"), 1);
-  EXPECT_EQ(marks("target", "now_right"), 0);
+  EXPECT_EQ(marks("target", "left"), 1);
+  EXPECT_EQ(marks("target", "right"), 0);
   EXPECT_EQ(marks("press", "waiting"), 1);
-  EXPECT_EQ(marks("press", "now_right"), 0);
+  EXPECT_EQ(marks("press", "right"), 0);
   touch();
-  EXPECT_EQ(marks("target", "now_left"), 0);
+  EXPECT_EQ(marks("target", "left"), 0);
   EXPECT_EQ(marks("target", "reached"), 1);
   EXPECT_EQ(marks("press", "waiting"), 0);
-  EXPECT_EQ(marks("press", "now_right"), 1);
+  EXPECT_EQ(marks("press", "right"), 1);
+  EXPECT_EQ(marks("press", "held"), 0) << "nothing is held yet";
+  place(1, Vec3(0.005, 0, 0));
+  push(1, 0.08);
+  show(5);
+  EXPECT_EQ(marks("press", "held"), 1) << "half of the hold";
+  show(5);
+  EXPECT_EQ(marks("press", "reached"), 1);
+  EXPECT_EQ(marks("press", "held"), 0);
+}
+
+/// The example's clip is free. Its blades, 9 mm long, point down from z = 13 mm at y = 5 mm.
+TEST(ClipPlaced, CountsItsPlaceAndThatItIsSquare) {
+  const auto outcome = [](const std::string& at, const std::string& axis) {
+    std::string text = read_file_bytes(example);
+    const auto set = [&](const std::string& from, const std::string& to) {
+      text.replace(text.find(from), from.size(), to);
+    };
+    set("at=\"0 5 8 mm\"", "at=\"" + at + "\"");
+    set("axis=\"1 0 0\"", "axis=\"" + axis + "\"");
+    auto s = test::load_text(text, example);
+    if (!s) return std::pair(-1, -1);
+    for (int i = 0; i < 14; ++i) s->step();
+    const ExerciseLog& log = s->exercise()->log();
+    return std::pair(int(log.goals().back().done), log.faults().front().count);
+  };
+  EXPECT_EQ(outcome("0 5 8 mm", "1 0 0"), std::pair(1, 0));
+  EXPECT_EQ(outcome("0 5 5 mm", "0 1 0.2"), std::pair(1, 0)) << "11 degrees from square";
+  EXPECT_EQ(outcome("0 5 5 mm", "0 1 0.5"), std::pair(0, 1)) << "27 degrees from square";
+  EXPECT_EQ(outcome("1.1 5 8 mm", "1 0 0"), std::pair(0, 1)) << "1.1 mm beside the mark";
+  EXPECT_EQ(outcome("0 5 2 mm", "1 0 0"), std::pair(0, 1)) << "beyond the tips";
 }
 
 TEST_F(SkillRules, ResetForgetsEverything) {
@@ -133,7 +164,7 @@ TEST_F(SkillRules, ResetForgetsEverything) {
   ASSERT_TRUE(done(0));
   s->reset();
   EXPECT_FALSE(done(0));
-  EXPECT_EQ(marks("target", "now_left"), 1);
+  EXPECT_EQ(marks("target", "left"), 1);
   EXPECT_TRUE(std::isnan(metric("touch_error", left_hand)));
   show(3);
   EXPECT_FALSE(done(0)) << "the time before the reset must not count";

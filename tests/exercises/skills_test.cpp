@@ -17,7 +17,9 @@ std::filesystem::path skill(const std::string& name) {
 
 class SkillTask : public testing::TestWithParam<std::tuple<const char*, int>> {};
 INSTANTIATE_TEST_SUITE_P(Skills, SkillTask,
-                         testing::Combine(testing::Values("1_touch_targets"), testing::Values(60, 120)),
+                         testing::Combine(testing::Values("1_touch_targets", "2_hold_a_force", "3_exchange",
+                                                          "4_cut_threads", "5_clip_a_tube", "6_suction_a_pool"),
+                                          testing::Values(60, 120)),
                          [](const auto& one) {
                            return "Skill" + std::string(std::get<0>(one.param)) + "_at_" +
                                   std::to_string(std::get<1>(one.param)) + "_Hz";
@@ -36,16 +38,19 @@ TEST_P(SkillTask, SteadyHandsCompleteItWithoutAFault) {
   for (const auto& [id, share] : o.lasting_force) EXPECT_LT(share, 0.7) << id;
 }
 
-/// What a beginner's motion earns: exactly these kinds of faults, each as often as it is made.
-void expect_faults(const std::string& name, const std::map<std::string, int>& expected, int rate) {
-  const test::Played o = test::play_motion(skill(name), "rough", -1, {}, 1.0 / rate);
-  ASSERT_TRUE(o.ran);
-  EXPECT_TRUE(o.finite);
+constexpr int some = -1;  ///< at least one, where chance of rounding decides how many
+
+/// What a beginner's motion earns: these faults and no others.
+test::Played expect_faults(const std::string& name, const std::map<std::string, int>& expected, int rate) {
+  test::Played o = test::play_motion(skill(name), "rough", -1, {}, 1.0 / rate);
+  EXPECT_TRUE(o.ran && o.finite);
   for (const auto& [id, count] : o.faults) {
     const auto found = expected.find(id);
-    EXPECT_EQ(count, found == expected.end() ? 0 : found->second) << id << " at " << rate << " Hz";
+    if (found != expected.end() && found->second == some) EXPECT_GE(count, 1) << id << " at " << rate << " Hz";
+    else EXPECT_EQ(count, found == expected.end() ? 0 : found->second) << id << " at " << rate << " Hz";
   }
   for (const auto& [id, count] : expected) EXPECT_TRUE(o.faults.contains(id)) << id;
+  return o;
 }
 
 class RoughHands : public testing::TestWithParam<int> {};
@@ -53,6 +58,54 @@ INSTANTIATE_TEST_SUITE_P(Skills, RoughHands, testing::Values(60, 120),
                          [](const auto& one) { return "At" + std::to_string(one.param) + "Hz"; });
 
 TEST_P(RoughHands, GoThroughTheTargetsOntoThePosts) { expect_faults("1_touch_targets", {{"touched", 8}}, GetParam()); }
+
+TEST_P(RoughHands, PushTooFarIntoThePad) {
+  const test::Played o = expect_faults("2_hold_a_force", {{"too_much", 4}}, GetParam());
+  for (const auto& [id, time] : o.goals) EXPECT_LT(time, 0) << id << ": no force lasted";
+}
+
+TEST_P(RoughHands, TearAtTheFlapAndMeetTheTray) {
+  const test::Played o = expect_faults("3_exchange", {{"flap_pressed", some}, {"touched", 2}}, GetParam());
+  for (const auto& [id, time] : o.goals) EXPECT_LT(time, 0) << id << ": nobody held the flap";
+}
+
+TEST_P(RoughHands, TearThreadsAndCutWrongOnes) {
+  expect_faults("4_cut_threads", {{"torn", some}, {"wrong", some}}, GetParam());
+}
+
+TEST_P(RoughHands, LetTheClipGoBesideTheMark) {
+  const test::Played o = expect_faults("5_clip_a_tube", {{"placed_elsewhere", 1}, {"tube_pulled", some}}, GetParam());
+  EXPECT_LT(o.goals.at("placed"), 0);
+}
+
+TEST_P(RoughHands, SuckAtTheWallOfTheBowl) {
+  const test::Played o = expect_faults("6_suction_a_pool", {{"wall", 2}}, GetParam());
+  EXPECT_LT(o.goals.at("dry"), 0);
+}
+
+/// One hand alone cannot do what two must do.
+TEST(SkillExchange, OneHandAloneReachesNoTarget) {
+  for (const int hand : {0, 1}) {
+    const test::Played o = test::play_motion(skill("3_exchange"), "steady", hand);
+    ASSERT_TRUE(o.ran);
+    for (const auto& [id, time] : o.goals) EXPECT_LT(time, 0) << id;
+  }
+}
+
+TEST(SkillThreads, SteadyHandsCutTheMarkedOnesAlone) {
+  test::Played o = test::play_motion(skill("4_cut_threads"), "steady");
+  ASSERT_TRUE(o.ran);
+  EXPECT_EQ(o.events["strand_cut"], 3);
+  EXPECT_EQ(o.left, 4);
+}
+
+TEST(SkillTube, TheClipStaysAtItsMarkAndHoldsTheTubeShut) {
+  test::Played o = test::play_motion(skill("5_clip_a_tube"), "steady");
+  ASSERT_TRUE(o.ran);
+  EXPECT_EQ(o.events["clip_released"], 1);
+  EXPECT_LT(o.channels["flow.tube.lumen"], 0.05);
+  EXPECT_LT(o.channels["placed.off"], 1e-3) << "m";
+}
 
 /// The motions are those that their generator writes.
 TEST(SkillMotions, AreWhatTheirGeneratorWrites) {
@@ -68,7 +121,7 @@ TEST(SkillMotions, AreWhatTheirGeneratorWrites) {
         << name << " is stale: python3 tools/motions/skills.py";
     ++motions;
   }
-  EXPECT_EQ(motions, 2);
+  EXPECT_EQ(motions, 12);
   std::filesystem::remove_all(folder);
 }
 

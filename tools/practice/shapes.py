@@ -99,6 +99,16 @@ def post(surface, x, y, radius, height, n=20):
     return surface.rings([[(px, py, z) for px, py in circle(x, y, r, n)] for r, z in profile])
 
 
+def block(low, high):
+    """A block with bevelled upper edges."""
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    rings = []
+    for inset, z in ((0, z0), (0, z1 - 0.6), (0.6, z1)):
+        a, b, c, d = x0 + inset, y0 + inset, x1 - inset, y1 - inset
+        rings.append([(a, b, z), (c, b, z), (c, d, z), (a, d, z)])
+    return Surface().rings(rings)
+
+
 def msh(nodes, tets):
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(nodes))]
     lines += ["%d %.6g %.6g %.6g" % (i, *p) for i, p in enumerate(nodes, 1)]
