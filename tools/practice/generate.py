@@ -81,7 +81,7 @@ def solids():
     yield "flap.msh", "a soft flap above the floor", shapes.pad((12, 8, 1), FLAP_LOW, FLAP_HIGH)
     yield "rail_left.msh", "a soft rail to the left", rail(-1)
     yield "rail_right.msh", "a soft rail to the right", rail(1)
-    yield "bowl.msh", "a soft pad with a hollow", shapes.pad((18, 16, 2), (-19, -16.5, 0.05), (19, 16.5, 1.05), bowl)
+    yield "bowl.msh", "a soft pad with a hollow", shapes.pad((14, 12, 2), (-19, -16.5, 0.05), (19, 16.5, 1.05), bowl)
     yield "pad.msh", "a soft pad in the tray", shapes.pad((12, 8, 2), PAD_LOW, PAD_HIGH, rounded)
 
 
