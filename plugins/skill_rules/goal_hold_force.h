@@ -6,6 +6,17 @@
 
 namespace insula {
 
+/// A label that is not always there.
+class Reading final : public DrawableBase {
+ public:
+  Reading(Component* owner, DrawableSpec spec) : DrawableBase(owner, spec, DrawableKind::label) {}
+  void set(const Vec3& p, double value) {
+    resize_elements(1);
+    put(0, p, value);
+  }
+  void clear() { resize_elements(0); }
+};
+
 class GoalHoldForce final : public SkillGoal {
  public:
   Ref<Body> on{this, {.name = "on", .doc = "body that is pressed or pulled"}};
@@ -32,12 +43,12 @@ class GoalHoldForce final : public SkillGoal {
                   .value = "share of the hold that is done",
                   .radius = "0.4 mm",
                   .points_per_line = ring_points}};
-  Label reading{this,
-                {.name = "reading",
-                 .doc = "the force in its turn, to 5 mN; a dash before and after",
-                 .material = "place_reading",
-                 .value = "force",
-                 .unit = "N"}};
+  Reading reading{this,
+                  {.name = "reading",
+                   .doc = "the force in its turn, to 5 mN",
+                   .material = "place_reading",
+                   .value = "force",
+                   .unit = "N"}};
 
   void prepare(PrepareContext& context) override {
     SkillGoal::prepare(context);
@@ -51,7 +62,8 @@ class GoalHoldForce final : public SkillGoal {
   void publish() override {
     SkillGoal::publish();
     force.set(turn() ? now_ : std::nan(""));
-    reading.set(at() + 0.012 * normal().normalized(), turn() ? 0.005 * std::round(now_ / 0.005) : std::nan(""));
+    if (turn() && now_ >= 0) reading.set(at() + 0.012 * normal().normalized(), 0.005 * std::round(now_ / 0.005));
+    else reading.clear();
   }
   void reset() override {
     SkillGoal::reset();

@@ -132,9 +132,11 @@ TEST_F(SkillRules, MarksShowWhoseTurnItIs) {
   push(1, 0.08);
   show(5);
   EXPECT_EQ(marks("press", "held"), 1) << "half of the hold";
+  EXPECT_EQ(marks("press", "reading"), 1);
   show(5);
   EXPECT_EQ(marks("press", "reached"), 1);
   EXPECT_EQ(marks("press", "held"), 0);
+  EXPECT_EQ(marks("press", "reading"), 0);
 }
 
 /// The example's clip is free. Its blades, 9 mm long, point down from z = 13 mm at y = 5 mm.
