@@ -57,6 +57,8 @@ class CerebrospinalFluid final : public Constraint {
                               .min = "0",
                               .max = "1",
                               .doc = "share of that which it takes with its vent open"}};
+  Param<MaterialName> material{
+      this, {.name = "material", .fallback = "cerebrospinal_fluid", .doc = "look of the fluid in the viewer"}};
 
   Channel<Length> height{this,
                          {.name = "height",
@@ -75,6 +77,7 @@ class CerebrospinalFluid final : public Constraint {
   void prepare(PrepareContext& context) override {
     if (up().norm() < 1e-9) return error(context, up, "must be a direction");
     if (level() > depth()) error(context, level, "is above depth, the rim of the bowl");
+    pool.set_material(material());
     bowl_ = {radius(), depth(), origin(), up().normalized()};
     reset();
   }

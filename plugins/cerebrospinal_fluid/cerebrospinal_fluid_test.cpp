@@ -60,6 +60,17 @@ TEST(CerebrospinalFluid, StandsAtItsLevelAndFillsAgainAtItsRate) {
   EXPECT_NEAR(f.volume() - before, 20 * f.h * 3 * ml / 60, 1e-15);
 }
 
+TEST(CerebrospinalFluid, LooksLikeItsMaterial) {
+  const auto look = [](const std::string& attribute) {
+    const auto s =
+        test::load_text("<scene><cerebrospinal_fluid id=\"f\" origin=\"0 0 0 mm\"" + attribute + "/></scene>",
+                        std::filesystem::path(INSULA_SOURCE_DIR) / "scene.xml");
+    return s ? s->scene().find("f")->drawables().at(0)->material() : "";
+  };
+  EXPECT_EQ(look(""), "cerebrospinal_fluid");
+  EXPECT_EQ(look(" material=\"blood\""), "blood");
+}
+
 TEST(CerebrospinalFluid, BeginsAnewOnReset) {
   const Field f;
   ASSERT_TRUE(f.s);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A goal and a fault on any channel of the scene. The comparison is with the value at the end of each step. A goal is
-// reached when the channel has been beyond the limit for `hold`. A fault counts when it has been so for longer than
-// `grace`, and counts again once the channel has come back by a tenth of the limit.
+// A goal and a fault on any channel of the scene, and a fault for each event of a kind. The comparison is with the
+// value at the end of each step. A goal is reached when the channel has been beyond the limit for `hold`. A fault
+// counts when it has been so for longer than `grace`, and counts again once the channel has come back by a tenth of the
+// limit.
 #include "plugins/exercise_rules/channel_rules.h"
 
 #include <algorithm>
@@ -140,12 +141,31 @@ class FaultChannel final : public ExerciseRule {
   bool armed_ = true;
 };
 
+class FaultEvent final : public ExerciseRule {
+ public:
+  Param<std::string> text{this, {.name = "text", .doc = "what the trainee is told"}};
+  Param<std::string> event{this, {.name = "event", .doc = "event that is a fault each time: \"vein_parted\""}};
+
+  void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
+    fault_ = log.add_fault(id, text());
+    check_event(context, simulation, *this, event);
+  }
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    for (const Event& e : r.events)
+      if (e.kind == event()) log.fault(fault_, r.time, e.value);
+  }
+
+ private:
+  int fault_ = 0;
+};
+
 }  // namespace
 
 void register_channel_rules(Registry& registry) {
   registry.add<GoalChannel>("goal_channel", Kind::exercise_rule,
                             "reached when a channel has stayed on one side of a limit");
   registry.add<FaultChannel>("fault_channel", Kind::exercise_rule, "counts how often a channel goes beyond a limit");
+  registry.add<FaultEvent>("fault_event", Kind::exercise_rule, "counts each event of a kind");
 }
 
 }  // namespace insula

@@ -253,9 +253,11 @@ TEST_F(Rules, TornStrandsCountAndCutOnesDoNot) {
                    {"strand_torn", "strands", "", 0.06, 1}};
   show();
   EXPECT_EQ(faults("torn"), 2);
+  EXPECT_EQ(faults("parted"), 1) << "the event that <fault_event> names";
   report.events.clear();
   show();
   EXPECT_EQ(faults("torn"), 2);
+  EXPECT_EQ(faults("parted"), 1);
 }
 
 TEST_F(Rules, TwoHandsFailWhenTheyAreOutOfReach) {
@@ -360,6 +362,13 @@ TEST(RulesOfAScene, TwoHandsNeedAnEventAndOneSignOfTheOther) {
   };
   EXPECT_NE(messages(R"(event="strand_cut" on="floor")").find("no component of the scene has the event"),
             std::string::npos);
+  EXPECT_NE(
+      load_simulation_text(
+          R"(<scene><exercise id="e" title="t"><fault_event id="f" text="t" event="strand_cut"/></exercise></scene>)",
+          example, test::builtin())
+          .diagnostics.format()
+          .find("no component of the scene has the event"),
+      std::string::npos);
   EXPECT_NE(messages(R"(event="strand_cut")").find(R"(needs either "on" or "channel")"), std::string::npos);
 }
 

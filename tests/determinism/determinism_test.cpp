@@ -158,9 +158,14 @@ TEST(Determinism, UnrelatedComponentsDoNotMatter) {
   }
 }
 
-TEST(Determinism, TrainingScenesWithTheirMotions) {
-  if (!fs::is_directory(source / "scenes/training")) GTEST_SKIP() << "no training scenes";
-  for (const auto& entry : fs::directory_iterator(source / "scenes/training")) {
+class ScenesOf : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Determinism, ScenesOf, testing::Values("training", "skills"),
+                         [](const auto& one) { return std::string(one.param); });
+
+TEST_P(ScenesOf, WithTheirMotions) {
+  const fs::path folder = source / "scenes" / GetParam();
+  if (!fs::is_directory(folder)) GTEST_SKIP() << "no " << folder;
+  for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() != ".xml") continue;
     auto one = test::load(entry.path(), 1), two = test::load(entry.path(), 2);
     ASSERT_TRUE(one && two) << entry.path();
