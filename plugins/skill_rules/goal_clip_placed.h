@@ -34,13 +34,7 @@ class GoalClipPlaced final : public SkillGoal {
                        .shown = Shown::curve,
                        .display = "mm",
                        .digits = 1}};
-  Marks<Polylines> ring{this,
-                        {.name = {},
-                         .doc = {},
-                         .material = {},
-                         .value = "share of the hold that is done",
-                         .radius = "0.3 mm",
-                         .points_per_line = ring_points}};
+  Marks<Polylines> ring{this, "0.3 mm", ring_points};
 
   void prepare(PrepareContext& context) override {
     SkillGoal::prepare(context);

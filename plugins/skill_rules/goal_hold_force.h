@@ -34,13 +34,7 @@ class GoalHoldForce final : public SkillGoal {
                         .display = "mN",
                         .digits = 0}};
 
-  Marks<Polylines> ring{this,
-                        {.name = {},
-                         .doc = {},
-                         .material = {},
-                         .value = "share of the hold that is done",
-                         .radius = "0.3 mm",
-                         .points_per_line = ring_points}};
+  Marks<Polylines> ring{this, "0.3 mm", ring_points};
   Polylines held{this,
                  {.name = "held",
                   .doc = "part of a ring: the share of the hold that is done",

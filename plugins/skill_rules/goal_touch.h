@@ -27,8 +27,7 @@ class GoalTouch final : public SkillGoal {
                        .display = "mm",
                        .digits = 1}};
 
-  Marks<Points> ball{
-      this, {.name = {}, .doc = {}, .material = {}, .value = "share of the hold that is done", .radius = "1 mm"}};
+  Marks<Points> ball{this, "1 mm"};
 
   void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
     SkillGoal::declare(context, simulation, log);

@@ -17,11 +17,15 @@ enum class Look { waiting, left, right, reached };
 template <class D>
 class Marks {
  public:
-  Marks(Component* owner, DrawableSpec spec)
-      : all_{D(owner, with(spec, "waiting", "the place before its turn", "place_waiting")),
-             D(owner, with(spec, "left", "the place while it is the left hand's turn", "place_of_left_hand")),
-             D(owner, with(spec, "right", "the place while it is the right hand's turn", "place_of_right_hand")),
-             D(owner, with(spec, "reached", "the place once the goal is reached", "place_reached"))} {}
+  /// radius: DrawableSpec::radius, with its unit. points_per_line: of polylines.
+  Marks(Component* owner, std::string_view radius, int points_per_line = 2)
+      : all_{D(owner, spec("waiting", "the place before its turn", "place_waiting", radius, points_per_line)),
+             D(owner, spec("left", "the place while it is the left hand's turn", "place_of_left_hand", radius,
+                           points_per_line)),
+             D(owner, spec("right", "the place while it is the right hand's turn", "place_of_right_hand", radius,
+                           points_per_line)),
+             D(owner,
+               spec("reached", "the place once the goal is reached", "place_reached", radius, points_per_line))} {}
   D& operator[](Look look) { return all_[std::size_t(look)]; }
   /// The one to be filled; the others show nothing.
   D& only(Look look) {
@@ -30,11 +34,14 @@ class Marks {
   }
 
  private:
-  static DrawableSpec with(DrawableSpec spec, std::string_view name, std::string_view doc, std::string_view material) {
-    spec.name = name;
-    spec.doc = doc;
-    spec.material = material;
-    return spec;
+  static DrawableSpec spec(std::string_view name, std::string_view doc, std::string_view material,
+                           std::string_view radius, int points_per_line) {
+    return {.name = name,
+            .doc = doc,
+            .material = material,
+            .value = "share of the hold that is done",
+            .radius = radius,
+            .points_per_line = points_per_line};
   }
   std::array<D, 4> all_;
 };
