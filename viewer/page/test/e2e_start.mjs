@@ -72,7 +72,8 @@ try {
   await page.locator('.card', { hasText: '1 Opening' }).getByRole('button', { name: /Begin/ }).click();
   await page.waitForURL(/index\.html/, patience);
   await page.goto(address);
-  assert.equal(await page.inputValue('#person'), 'P07', 'the page remembers who is here');
+  // The page remembers who is here.
+  await page.waitForFunction(() => document.querySelector('#person')?.value === 'P07', null, patience);
   await other.getByText('begun').waitFor(patience);
   await other.getByRole('button', { name: /Progress/ }).click();
   await page.locator('dialog[open] .curve svg circle').first().waitFor(patience);
