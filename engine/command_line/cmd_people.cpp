@@ -22,8 +22,6 @@ using training::Person;
 using training::Run;
 using training::Store;
 
-constexpr std::size_t all_runs = 1'000'000;
-
 Store open_store(const PeopleOptions& o) { return Store(training::data_folder(o.data).store()); }
 
 /// UTC, ISO 8601.
@@ -62,7 +60,7 @@ void export_runs(const Store& store, const PeopleOptions& o, std::ostream& out) 
   TableFile metrics(o.output, "metrics", o.format, {"run", "metric", "hand", "value", "unit", "better", "text"});
   TableFile faults(o.output, "faults", o.format, {"run", "fault", "count", "text"});
   for (const std::string& person : whose(store, o.pseudonym))
-    for (const Run& summary : store.runs(person, all_runs)) {
+    for (const Run& summary : store.runs(person, Store::all_runs)) {
       const auto r = store.run(summary.uuid);
       if (!r) continue;  // forgotten in between
       runs.row({r->uuid, r->person, r->scene, r->title, r->mode, time_text(r->began_ms), r->duration_s, r->state,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The commands for persons and what they have done: people add, list, export, forget, backup.
+// The commands for persons and what they have done: people add, list, progress, export, forget,
+// backup.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -14,11 +15,12 @@ namespace insula {
 struct PeopleOptions {
   std::filesystem::path data;                  ///< folder of the user's data; empty: the platform's
   training::Person person;                     ///< add
-  std::string pseudonym;                       ///< forget; export: only this person, empty: all
+  std::filesystem::path curriculum;            ///< progress
+  std::string pseudonym;                       ///< progress, forget; export: only this person, empty: all
   std::filesystem::path output;                ///< export: folder; backup: file
   std::string format = "csv";                  ///< export: "csv" or "json"
   std::vector<std::filesystem::path> folders;  ///< forget: of recordings and reports; empty: those of play
-  bool json = false;                           ///< list
+  bool json = false;                           ///< list, progress
 };
 
 /// Status 0; 2 if the pseudonym is in use or a field is wrong.
@@ -31,6 +33,9 @@ int cmd_people_export(const CommandContext& context, const PeopleOptions& option
 /// Removes a person with all runs, recordings and reports. Status 0, also if there is nothing; 1 if a file cannot be
 /// removed.
 int cmd_people_forget(const CommandContext& context, const PeopleOptions& options);
+/// Says how far a person has come in a curriculum, and what is next. Status 0; 2 if the curriculum has errors or the
+/// person is not known.
+int cmd_people_progress(const CommandContext& context, const PeopleOptions& options);
 /// Copies the store into one file, also while it is in use.
 int cmd_people_backup(const CommandContext& context, const PeopleOptions& options);
 

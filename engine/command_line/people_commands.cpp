@@ -35,6 +35,11 @@ void add_people_commands(CommandLine& line) {
 
   add("list", "all persons, with the number of their runs", cmd_people_list)->add_flag("--json", o->json, "as JSON");
 
+  auto* progress = add("progress", "how far a person has come in a curriculum, and what is next", cmd_people_progress);
+  progress->add_option("pseudonym", o->pseudonym, "of the person")->required();
+  progress->add_option("curriculum", o->curriculum, "its file")->required();
+  progress->add_flag("--json", o->json, "as JSON");
+
   auto* exported = add("export", "tables of persons, runs, metrics and faults", cmd_people_export);
   exported->add_option("-o,--output", o->output, "folder to write to")->required();
   exported->add_option("--person", o->pseudonym, "only this one (default: all, and guests)");

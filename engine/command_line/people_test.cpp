@@ -84,6 +84,42 @@ TEST_F(People, AreExportedOneOrAll) {
   EXPECT_EQ(run(cmd_people_export), 2);
 }
 
+TEST_F(People, ComeForwardInACurriculum) {
+  register_builtin(registry_);
+  options_.pseudonym = "P07", options_.json = true;
+  options_.curriculum = fs::path(INSULA_SOURCE_DIR) / "curricula/first_day.xml";
+  EXPECT_EQ(run(cmd_people_progress), 2) << "not known yet";
+  options_.person.pseudonym = "P07";
+  run(cmd_people_add);
+  const auto standing = [&] {
+    EXPECT_EQ(run(cmd_people_progress), 0) << err_.str();
+    const json hands = json::parse(out_.str())["modules"][0];
+    return std::vector<std::string>{hands["standing"], hands["tasks"][0]["standing"], hands["tasks"][1]["standing"]};
+  };
+  using Standings = std::vector<std::string>;
+  EXPECT_EQ(standing(), (Standings{"open", "open", "locked"}));
+  training::Run tried;
+  tried.person = "P07", tried.scene = "scenes/skills/1_touch_targets.xml", tried.title = "Touch", tried.state = "done";
+  const auto add = [&](const char* mode, bool guided, std::int64_t at) {
+    tried.uuid = training::new_uuid(), tried.mode = mode, tried.guided = guided, tried.began_ms = at;
+    store().add(tried);
+  };
+  add("demonstration", false, 1);
+  EXPECT_EQ(standing(), (Standings{"open", "open", "locked"}));
+  add("practice", true, 2);
+  add("practice", true, 3);
+  EXPECT_EQ(standing(), (Standings{"open", "passed", "open"})) << "the guide does not count for the second task";
+  add("test", false, 4);
+  EXPECT_EQ(standing(), (Standings{"passed", "passed", "passed"}));
+  options_.json = false;
+  EXPECT_EQ(run(cmd_people_progress), 0);
+  EXPECT_NE(out_.str().find("open     Gentle force"), std::string::npos) << out_.str();
+  EXPECT_NE(out_.str().find("insula play scenes/skills/1_touch_targets.xml"), std::string::npos)
+      << "the day begins with the warm-up: " << out_.str();
+  options_.curriculum = options_.data / "none.xml";
+  EXPECT_EQ(run(cmd_people_progress), 2);
+}
+
 TEST_F(People, AreForgottenWithTheirReports) {
   options_.person.pseudonym = "P07";
   run(cmd_people_add);

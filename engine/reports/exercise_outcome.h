@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The outcome of an exercise in reports for programs: goals, faults, clocks, measures and metrics.
 #pragma once
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -17,10 +18,13 @@ struct ExerciseOutcome {
         title(exercise.title()),
         text(exercise.text()),
         log(exercise.log()),
-        metrics(exercise.metrics()) {}
+        metrics(exercise.metrics()),
+        has_guide(std::any_of(exercise.motions().begin(), exercise.motions().end(),
+                              [](const MotionEntry* m) { return m->guide(); })) {}
   std::string id, title, text;
   ExerciseLog log;
   std::vector<MetricValue> metrics;
+  bool has_guide;  ///< practice shows targets
 };
 
 /// "running", "done" or "failed".

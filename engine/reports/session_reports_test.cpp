@@ -182,6 +182,8 @@ TEST_F(SessionReportsTest, EachRunIsKeptInTheTrainingStore) {
   EXPECT_EQ(runs[0].goals_done, 1);
   EXPECT_EQ(runs[1].goals_done, 0);
   EXPECT_EQ(runs[1].scene, (fs::canonical(folder_) / "press.xml").string());
+  EXPECT_FALSE(runs[0].guided) << "the exercise has no guide";
+  EXPECT_FALSE(runs[0].seed) << "nor complications";
   EXPECT_NEAR(runs[0].duration_s, 0.3, 1e-6);
   EXPECT_TRUE(fs::is_regular_file(runs[0].report));
   const auto all = reports();

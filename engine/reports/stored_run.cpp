@@ -2,6 +2,7 @@
 #include "engine/reports/stored_run.h"
 
 #include "engine/live/project_folder.h"
+#include "engine/live/session_mode.h"
 #include "training/store/store.h"
 
 namespace insula {
@@ -27,6 +28,8 @@ training::Run stored_run(const RunRecorder& recorder, const RunSummary& summary,
     if (f.count > 0) run.fault_counts.push_back({f.id, f.text, f.count});
   }
   run.step_rate_hz = summary.step_rate_hz;
+  if (summary.complications) run.seed = std::int64_t(summary.complications->seed);
+  run.guided = exercise.has_guide && summary.mode == name_of(SessionMode::practice);
   run.report = report;
   run.recording = summary.recording;
   for (const MetricValue& m : exercise.metrics)

@@ -52,7 +52,9 @@ struct Run {
   std::string state;      ///< "done", "failed" or "running": left before its end
   int goals = 0, goals_done = 0, faults = 0;
   double step_rate_hz = 0;
-  std::string report, recording;  ///< files; empty: none
+  std::optional<std::int64_t> seed;  ///< of the complications; none: the scene has none
+  bool guided = false;               ///< targets were shown to the hands
+  std::string report, recording;     ///< files; empty: none
   std::vector<RunMetric> metrics;
   std::vector<RunFault> fault_counts;
 

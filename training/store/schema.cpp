@@ -20,7 +20,8 @@ constexpr const char* migrations[] = {
          id INTEGER PRIMARY KEY, uuid TEXT NOT NULL UNIQUE, person INTEGER REFERENCES persons ON DELETE CASCADE,
          scene TEXT NOT NULL, title TEXT NOT NULL, mode TEXT NOT NULL, began_ms INTEGER NOT NULL,
          duration_s REAL NOT NULL, state TEXT NOT NULL, goals INTEGER NOT NULL, goals_done INTEGER NOT NULL,
-         faults INTEGER NOT NULL, step_rate_hz REAL NOT NULL, report TEXT NOT NULL, recording TEXT NOT NULL);
+         faults INTEGER NOT NULL, step_rate_hz REAL NOT NULL, seed INTEGER, guided INTEGER NOT NULL,
+         report TEXT NOT NULL, recording TEXT NOT NULL);
        CREATE INDEX runs_of_person ON runs (person, scene, began_ms);
        CREATE TABLE metrics (
          scene TEXT NOT NULL, metric TEXT NOT NULL, text TEXT NOT NULL, unit TEXT NOT NULL, better TEXT NOT NULL,

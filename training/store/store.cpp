@@ -19,7 +19,7 @@ constexpr const char* person_columns = "id, pseudonym, role, handedness, year, c
 // The person's number is replaced by the pseudonym.
 constexpr const char* run_columns =
     "runs.id, uuid, ifnull((SELECT pseudonym FROM persons WHERE id = runs.person), ''), scene, title, mode, began_ms, "
-    "duration_s, state, goals, goals_done, faults, step_rate_hz, report, recording";
+    "duration_s, state, goals, goals_done, faults, step_rate_hz, report, recording, seed, guided";
 // A guest's runs have no person. IS compares NULL too, and uses the index.
 constexpr const char* of_person = "person IS ?1";
 
@@ -47,6 +47,8 @@ Run run_of(const Statement& s) {
   r.mode = s.text(5), r.began_ms = s.integer(6), r.duration_s = s.real(7), r.state = s.text(8);
   r.goals = int(s.integer(9)), r.goals_done = int(s.integer(10)), r.faults = int(s.integer(11));
   r.step_rate_hz = s.real(12), r.report = s.text(13), r.recording = s.text(14);
+  if (!s.null(15)) r.seed = s.integer(15);
+  r.guided = s.integer(16) != 0;
   return r;
 }
 
@@ -112,10 +114,10 @@ bool Store::add(const Run& run) {
   database_
       .prepare(
           "INSERT INTO runs (uuid, person, scene, title, mode, began_ms, duration_s, state, goals, goals_done, "
-          "faults, step_rate_hz, report, recording) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, "
-          "?13, ?14) ON CONFLICT (uuid) DO NOTHING")
+          "faults, step_rate_hz, report, recording, seed, guided) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, "
+          "?11, ?12, ?13, ?14, ?15, ?16) ON CONFLICT (uuid) DO NOTHING")
       .bind(run.uuid, person, run.scene, run.title, run.mode, run.began_ms, run.duration_s, run.state, run.goals,
-            run.goals_done, run.faults, run.step_rate_hz, run.report, run.recording)
+            run.goals_done, run.faults, run.step_rate_hz, run.report, run.recording, run.seed, int(run.guided))
       .run();
   if (database_.changes() == 0) return false;
   const std::int64_t id = database_.last_id();

@@ -26,6 +26,7 @@ class Store {
 
   /// Keeps a run. A person who is not known yet is added. False: a run with this uuid is there already.
   bool add(const Run& run);
+  static constexpr std::size_t all_runs = std::size_t(1) << 40;
   /// The newest `most` runs of a person, or of guests if the pseudonym is empty, without metrics and faults by name.
   std::vector<Run> runs(const std::string& person, std::size_t most = 200) const;
   /// With its metrics and faults.

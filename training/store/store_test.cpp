@@ -86,6 +86,7 @@ TEST_F(TrainingStore, GivesARunBackAsItWas) {
   Store store(file());
   Record r = run("P07", "scenes/training/3_clipping.xml", 1'700'000'000'123);
   r.fault_counts = {{"stenosis", "The clip narrows a branch", 2}};
+  r.seed = 11, r.guided = true;
   r.faults = 2, r.state = "failed", r.goals_done = 1, r.step_rate_hz = 120, r.report = "/r.html", r.recording = "/s";
   r.metrics.push_back({"unknown", "left", NAN, "", "", "none", 0});
   EXPECT_TRUE(store.add(r));
@@ -98,6 +99,8 @@ TEST_F(TrainingStore, GivesARunBackAsItWas) {
   EXPECT_EQ(back->goals_done, 1);
   EXPECT_EQ(back->step_rate_hz, 120);
   EXPECT_EQ(back->recording, "/s");
+  EXPECT_EQ(back->seed, 11);
+  EXPECT_TRUE(back->guided);
   ASSERT_EQ(back->metrics.size(), 2u) << "a value that is not known is no value";
   EXPECT_EQ(back->metrics[0].id, "path_length");
   EXPECT_EQ(back->metrics[0].value, 70.5);
