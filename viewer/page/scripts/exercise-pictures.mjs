@@ -10,8 +10,8 @@ import { launch, patience } from '../test/browser.mjs';
 
 const root = fileURLToPath(new URL('../../..', import.meta.url));
 const programs = join(root, 'build/release/bin');
-const width = 960;
-const height = 540;
+const width = 1200;
+const height = 1100;
 
 async function take(browser, scene, timeS) {
   const folder = mkdtempSync(join(tmpdir(), 'insula_picture_'));
@@ -29,14 +29,19 @@ async function take(browser, scene, timeS) {
       if (found) resolve(found[1]);
     }),
   );
-  const page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor: 0.75 });
+  const page = await browser.newPage({ viewport: { width, height } });
   await page.goto(`${address}&t=${timeS}&quality=high`);
   await page.waitForTimeout(15_000);
-  await page.evaluate(() => {
-    document.getElementById('hud').style.opacity = '0';
+  // The field alone: the widest part of the picture that lies inside of the microscope's disc.
+  await page.addStyleTag({
+    content: '* { visibility: hidden !important } canvas { visibility: visible !important }',
   });
+  const box = await page.locator('canvas').first().boundingBox();
+  const high = 0.49 * Math.min(box.width, box.height);
+  const wide = (high * 16) / 9;
+  const clip = { x: box.x + (box.width - wide) / 2, y: box.y + (box.height - high) / 2, width: wide, height: high };
   const path = scene.replace(/\.xml$/, '.jpg');
-  await page.screenshot({ path, type: 'jpeg', quality: 80, timeout: patience.timeout });
+  await page.screenshot({ path, clip, type: 'jpeg', quality: 80, timeout: patience.timeout });
   await page.close();
   gateway.kill('SIGINT');
   rmSync(folder, { recursive: true });
