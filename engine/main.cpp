@@ -204,16 +204,16 @@ void add_play(Options& c) {
   insula::add_bands(*command, o.bands, o.band_group);
   command->add_flag("--no-reload", c.no_reload, "do not load the scene again when one of its files is saved");
   command->callback([&c, &o] {
-    c.play.browser = !c.no_browser;
-    c.play.reload = !c.no_reload;
+    o.browser = !c.no_browser;
+    o.reload = !c.no_reload;
     const insula::training::DataFolder data = insula::training::data_folder(o.data);
     if (c.no_report) o.report.clear();
     else if (o.report.empty()) o.report = insula::default_report_folder(o.data);
     if (c.no_record) o.record.clear();
     else if (o.record.empty()) o.record = data.sessions();
     if (!o.report.empty()) o.store = data.store();
-    c.play.plugin_paths = c.plugin_paths;
-    c.chosen = [&](const auto& x) { return insula::cmd_play(x, c.play); };
+    o.plugin_paths = c.plugin_paths;
+    c.chosen = [&o](const auto& x) { return insula::cmd_play(x, o); };
   });
 }
 

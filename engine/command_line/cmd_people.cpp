@@ -47,9 +47,9 @@ std::vector<std::string> whose(const Store& store, const std::string& only) {
 
 void export_persons(const Store& store, const PeopleOptions& o, std::ostream& out) {
   TableFile table(o.output, "persons", o.format, {"pseudonym", "role", "handedness", "year", "added"});
-  for (const Person& p : store.persons())
-    if (o.pseudonym.empty() || store.find(o.pseudonym)->id == p.id)
-      table.row({p.pseudonym, p.role, p.handedness, p.year, time_text(p.created_ms)});
+  const auto only = o.pseudonym.empty() ? std::nullopt : store.find(o.pseudonym);
+  for (const Person& p : only ? std::vector{*only} : store.persons())
+    table.row({p.pseudonym, p.role, p.handedness, p.year, time_text(p.created_ms)});
   fmt::print(out, "{}\n", table.close().string());
 }
 

@@ -31,11 +31,6 @@ namespace fs = std::filesystem;
 namespace insula {
 namespace {
 
-fs::path own_program() {
-  std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error);
-}
-
 /// Loads the scene only for a check, since the engine loads it again. Returns false if it has errors, which are
 /// printed. Takes the scene's devices if the command line gives none.
 bool scene_ok(const CommandContext& context, PlayOptions& options) {

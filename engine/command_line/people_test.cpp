@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "core/registry/registry.h"
+#include "core/testing/block_mesh.h"
 #include "training/store/data_folder.h"
 #include "training/store/store.h"
 
@@ -21,11 +22,7 @@ using nlohmann::json;
 
 class People : public testing::Test {
  protected:
-  People() {
-    std::string name = (fs::temp_directory_path() / "insula_people_XXXXXX").string();
-    options_.data = mkdtemp(name.data());
-  }
-  ~People() override { fs::remove_all(options_.data); }
+  People() { options_.data = folder_.path(); }
   int run(int (*command)(const CommandContext&, const PeopleOptions&)) {
     out_.str(""), err_.str("");
     return command({registry_, out_, err_}, options_);
@@ -36,6 +33,7 @@ class People : public testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
+  test::SceneFolder folder_;
   Registry registry_;
   std::ostringstream out_, err_;
   PeopleOptions options_;

@@ -8,12 +8,14 @@
 #include <filesystem>
 #include <ostream>
 
+#include "engine/live/project_folder.h"
+
 namespace insula {
 
 int run_tool_program(const std::string& name, const std::vector<std::string>& arguments,
                      const std::string& when_missing, std::ostream& err) {
   std::error_code error;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path self = own_program();
   const std::filesystem::path program = self.parent_path() / name;
   if (!std::filesystem::exists(program, error)) {
     err << "error: the program " << name << " is missing beside " << self.string() << ". " << when_missing << '\n';

@@ -3,11 +3,13 @@
 #include "engine/live/exercise_choice.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "core/testing/block_mesh.h"
 #include "engine/command_line/run.h"
 #include "engine/live/catalogue.h"
 #include "engine/live/project_folder.h"
@@ -20,23 +22,41 @@ using nlohmann::json;
 
 class ExerciseChoiceTest : public testing::Test {
  protected:
-  ExerciseChoiceTest() {
-    std::string name = (fs::temp_directory_path() / "insula_choice_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-  }
-  ~ExerciseChoiceTest() override { fs::remove_all(folder_); }
+  fs::path state_file() const { return folder_.path() / "choice.json"; }
   json state() const {
-    std::ifstream in(folder_ / "choice.json");
+    std::ifstream in(state_file());
     return json::parse(in);
   }
+  /// A session in which a page asks once. Returns its lines.
+  std::vector<std::string> session(ExerciseChoice& choice, const char* request, double duration_s) const {
+    std::vector<std::string> lines;
+    Supervisor* running = nullptr;
+    SupervisorSettings settings;
+    settings.look_s = 0.01, settings.duration_s = duration_s, settings.first_wait_s = 0.05;
+    bool asked = false;
+    settings.look = [&] {
+      if (!std::exchange(asked, true)) {
+        choice.ask(request);
+        EXPECT_EQ(state()["state"], "loading");
+      }
+      choice.look(*running);
+    };
+    Supervisor supervisor(settings, [&](std::string_view line) { lines.emplace_back(line); });
+    running = &supervisor;
+    ChildSpec engine;
+    engine.name = "engine";
+    engine.command = {"/bin/sh", "-c", "while :; do sleep 0.01; done"};
+    supervisor.add(engine);
+    EXPECT_EQ(supervisor.run(), 0);
+    return lines;
+  }
 
-  fs::path folder_;
+  test::SceneFolder folder_;
 };
 
 /// Two "engines": shells that print the line, and one that is killed after it has taken over.
 TEST_F(ExerciseChoiceTest, TakesOverTellsPagesAndSurvivesTheDeathOfTheNewEngine) {
-  std::vector<std::string> lines;
-  const fs::path died = folder_ / "died";
+  const fs::path died = folder_.path() / "died";
   const auto command = [&](const ChosenExercise& c) {
     const std::string dies = "[ -e " + died.string() + " ] || { touch " + died.string() + "; exit 9; }; ";
     return std::vector<std::string>{"/bin/sh", "-c",
@@ -45,32 +65,14 @@ TEST_F(ExerciseChoiceTest, TakesOverTellsPagesAndSurvivesTheDeathOfTheNewEngine)
                                         "; sleep 0.5; " + dies + "while :; do sleep 0.01; done"};
   };
   std::vector<std::string> taken;
-  ExerciseChoice choice({"a.xml", ""}, folder_ / "choice.json", command,
+  ExerciseChoice choice({"a.xml", ""}, state_file(), command,
                         [&](const ChosenExercise& c) { taken.push_back(c.scene + " " + c.person); });
   EXPECT_EQ(state()["state"], "running");
   EXPECT_EQ(state()["scene"], "a.xml");
   for (const char* bad : {"", "[]", R"({"scene":"b.xml"})", R"({"scene":1,"person":""})"}) choice.ask(bad);
   EXPECT_EQ(state()["scene"], "a.xml") << "what is no request changes nothing";
 
-  Supervisor* running = nullptr;
-  SupervisorSettings settings;
-  settings.look_s = 0.01, settings.duration_s = 3, settings.first_wait_s = 0.05;
-  bool asked = false;
-  settings.look = [&] {
-    if (!asked) {
-      asked = true;
-      choice.ask(R"({"scene":"b.xml","person":"P07"})");
-      EXPECT_EQ(state()["state"], "loading");
-    }
-    choice.look(*running);
-  };
-  Supervisor supervisor(settings, [&](std::string_view line) { lines.emplace_back(line); });
-  running = &supervisor;
-  ChildSpec engine;
-  engine.name = "engine";
-  engine.command = {"/bin/sh", "-c", "while :; do sleep 0.01; done"};
-  supervisor.add(engine);
-  EXPECT_EQ(supervisor.run(), 0);
+  const auto lines = session(choice, R"({"scene":"b.xml","person":"P07"})", 3);
   EXPECT_EQ(taken, std::vector<std::string>{"b.xml P07"});
   EXPECT_EQ(state()["state"], "running");
   EXPECT_EQ(state()["person"], "P07");
@@ -80,52 +82,34 @@ TEST_F(ExerciseChoiceTest, TakesOverTellsPagesAndSurvivesTheDeathOfTheNewEngine)
 
 TEST_F(ExerciseChoiceTest, ARefusedSceneLeavesTheOldOneAndSaysWhy) {
   ExerciseChoice choice(
-      {"a.xml", ""}, folder_ / "choice.json",
+      {"a.xml", ""}, state_file(),
       [](const ChosenExercise&) {
         return std::vector<std::string>{"/bin/sh", "-c", "echo 'b.xml:1:2: error: wrong'; exit 2"};
       },
       [](const ChosenExercise&) { FAIL() << "it was not taken"; });
-  Supervisor* running = nullptr;
-  SupervisorSettings settings;
-  settings.look_s = 0.01, settings.duration_s = 0.6;
-  bool asked = false;
-  settings.look = [&] {
-    if (!std::exchange(asked, true)) choice.ask(R"({"scene":"b.xml","person":""})");
-    choice.look(*running);
-  };
-  Supervisor supervisor(settings, [](std::string_view) {});
-  running = &supervisor;
-  ChildSpec engine;
-  engine.name = "engine";
-  engine.command = {"/bin/sh", "-c", "exec sleep 1000"};
-  supervisor.add(engine);
-  EXPECT_EQ(supervisor.run(), 0);
+  session(choice, R"({"scene":"b.xml","person":""})", 0.6);
   EXPECT_EQ(state()["state"], "refused");
   EXPECT_EQ(state()["text"], "b.xml:1:2: error: wrong\n");
 }
 
 TEST_F(ExerciseChoiceTest, TheCatalogueHasScenesWithAnExercise) {
-  const auto write = [&](const std::string& name, const std::string& text) {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name) << text;
-  };
-  write("scenes/training/2_b.xml", R"(<scene title="B"><exercise id="e" text="Do &lt;it&gt;"/></scene>)");
-  write("scenes/training/2_b.jpg", "picture");
-  write("scenes/training/1_a.xml", R"(<scene><exercise id="e" title="A"/></scene>)");
-  write("scenes/training/motion.csv", "");
-  write("scenes/training/broken.xml", "<scene><exercise");
-  write("scenes/parts/c.xml", R"(<part><exercise id="e"/></part>)");
-  write("scenes/cases/mine/3_c.xml", R"(<scene title="C"><exercise id="e"/></scene>)");
-  write("scenes/cases/bench.xml", R"(<scene title="No exercise"/>)");
-  const auto found = catalogue(folder_);
+  folder_.write("scenes/training/2_b.xml", R"(<scene title="B"><exercise id="e" text="Do &lt;it&gt;"/></scene>)");
+  folder_.write("scenes/training/2_b.jpg", "picture");
+  folder_.write("scenes/training/1_a.xml", R"(<scene><exercise id="e" title="A"/></scene>)");
+  folder_.write("scenes/training/motion.csv", "");
+  folder_.write("scenes/training/broken.xml", "<scene><exercise");
+  folder_.write("scenes/parts/c.xml", R"(<part><exercise id="e"/></part>)");
+  folder_.write("scenes/cases/mine/3_c.xml", R"(<scene title="C"><exercise id="e"/></scene>)");
+  folder_.write("scenes/cases/bench.xml", R"(<scene title="No exercise"/>)");
+  const auto found = catalogue(folder_.path());
   ASSERT_EQ(found.size(), 3u);
   EXPECT_EQ(found[0].scene, "scenes/training/1_a.xml");
   EXPECT_EQ(found[0].title, "A");
   EXPECT_EQ(found[0].picture, "");
   EXPECT_EQ(found[1].text, "Do <it>");
-  EXPECT_EQ(found[1].picture, (folder_ / "scenes/training/2_b.jpg").string());
+  EXPECT_EQ(found[1].picture, (folder_.path() / "scenes/training/2_b.jpg").string());
   EXPECT_EQ(found[2].group, "cases");
-  EXPECT_TRUE(catalogue(folder_ / "nowhere").empty());
+  EXPECT_TRUE(catalogue(folder_.path() / "nowhere").empty());
 }
 
 TEST_F(ExerciseChoiceTest, SceneNamesAreThoseBelowTheProject) {

@@ -13,9 +13,14 @@ fs::path resolved(const fs::path& path) {
 
 }  // namespace
 
+fs::path own_program() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error);
+}
+
 fs::path project_folder() {
   std::error_code error;
-  const fs::path bin = fs::read_symlink("/proc/self/exe", error).parent_path();
+  const fs::path bin = own_program().parent_path();
   for (const fs::path& root : {fs::path("."), bin / "../../..", bin / "../share/insula"})
     if (fs::is_regular_file(root / "scenes/training/1_sylvian_fissure.xml", error)) return root.lexically_normal();
   return {};

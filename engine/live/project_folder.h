@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the project's scenes and curricula are: beside the program's installation or sources.
+// Where this program is, and the project's scenes and curricula beside its installation or sources.
 #pragma once
 #include <filesystem>
 #include <string>
 
 namespace insula {
+
+/// This program's file.
+std::filesystem::path own_program();
 
 /// The folder that contains scenes/: the current one, else that of the sources or of the installation of this program.
 /// Empty: there is none.

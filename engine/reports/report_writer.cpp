@@ -162,6 +162,11 @@ void RunSummary::take(const Simulation& simulation) {
     }
 }
 
+std::string RunSummary::person() const {
+  const auto found = fields.find("person");
+  return found == fields.end() ? std::string() : found->second;
+}
+
 const std::array<const char*, stage_count>& stage_names() {
   static constexpr std::array<const char*, stage_count> names{"free_motion", "collision", "build",
                                                               "solve",       "correct",   "publish"};

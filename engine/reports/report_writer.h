@@ -30,6 +30,8 @@ class Simulation;
 struct RunSummary {
   /// Takes title, step rate, state hash, and the present exercise and complications.
   void take(const Simulation& simulation);
+  /// The field of that name; empty: a guest.
+  std::string person() const;
 
   std::string title;                          ///< of the scene
   std::string scene, motion;                  ///< as named on the command line

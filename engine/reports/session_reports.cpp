@@ -21,13 +21,6 @@ namespace fs = std::filesystem;
 
 namespace insula {
 
-namespace {
-std::string person_of(const std::map<std::string, std::string>& fields) {
-  const auto found = fields.find("person");
-  return found == fields.end() ? "" : found->second;
-}
-}  // namespace
-
 fs::path new_report_folder(const fs::path& root, const std::string& name) {
   std::error_code error;
   fs::create_directories(root, error);
@@ -157,7 +150,7 @@ void SessionReports::write(const Simulation& simulation) {
                                                pass = done_->pass, recorded = recorded_pass_]() mutable {
       try {
         const fs::path folder = new_report_folder(root, name);
-        summary.own_runs = own_runs(root, summary.title, person_of(summary.fields), folder);
+        summary.own_runs = own_runs(root, summary.title, summary.person(), folder);
         write_report(folder, recorder, summary);
         const fs::path page = fs::absolute(folder / "report.html");
         spdlog::info("report: {}", page.string());

@@ -11,7 +11,7 @@ training::Run stored_run(const RunRecorder& recorder, const RunSummary& summary,
   const ExerciseOutcome& exercise = summary.exercise.value();
   training::Run run;
   run.uuid = training::new_uuid();
-  if (const auto person = summary.fields.find("person"); person != summary.fields.end()) run.person = person->second;
+  run.person = summary.person();
   run.scene = scene_name(summary.scene);
   run.title = exercise.title;
   run.mode = summary.mode;

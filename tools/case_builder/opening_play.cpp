@@ -1,33 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/case_builder/opening_play.h"
-#include "core/sim/channel_sum.h"
 
 #include <fmt/format.h>
 
-#include "core/base/input_error.h"
-#include "core/registry/registry.h"
-#include "core/sim/simulation.h"
-#include "engine/live/headless.h"
+#include "core/sim/channel_sum.h"
+#include "tools/case_builder/rehearsal.h"
 
 namespace insula::case_builder {
 namespace {
 
-constexpr double after_the_hands = 3;  // s, that goals may still be held
-
 /// What went wrong, in words; empty: it was done without a fault.
 std::string complaint(const fs::path& scene, Progress& progress) {
-  Registry registry;
-  register_builtin(registry);
-  const auto loaded = load_simulation(scene, registry, 1);
-  if (!loaded.simulation) throw InputError("the opening of the fissure does not load:\n" + loaded.diagnostics.format());
-  Simulation& s = *loaded.simulation;
-  const Motion motion = load_motion(s.exercise()->motions().front()->file());
-  HeadlessRun run(s, motion);
-  const double end = motion.duration() + after_the_hands;
-  while (s.time() < end && s.exercise()->log().state() == ExerciseState::running) {
-    run.step();
-    progress.share(s.time() / end);
-  }
+  const Rehearsal played(scene, "the opening of the fissure", false, [&](double done) { progress.share(done); });
+  const Simulation& s = played.simulation();
   std::string out;
   if (s.exercise()->log().state() != ExerciseState::done)
     out = fmt::format("{:.0f} of {:.0f} strands stand at the end", channel_sum(s, "standing"), channel_sum(s, "total"));

@@ -5,13 +5,10 @@
 
 #include <cmath>
 
-#include "core/base/input_error.h"
 #include "core/model/formats/file_bytes.h"
-#include "core/registry/registry.h"
-#include "core/sim/simulation.h"
-#include "engine/live/headless.h"
 #include "tools/case_builder/motion_script.h"
 #include "tools/case_builder/place.h"
+#include "tools/case_builder/rehearsal.h"
 #include "tools/case_builder/scenes.h"
 
 namespace insula::case_builder {
@@ -19,7 +16,6 @@ namespace {
 
 // Of the blades above the neck's plane, in diameters of the neck; the first one is taken without a rehearsal.
 constexpr double heights[] = {0.3, 0.0, 0.2, 0.4};
-constexpr double after_the_hands = 3;  // s, that goals may still be held
 
 std::string rupture_motion(const ClipPlan& plan, const ApplierPose& temporary, const std::string& temporary_clip,
                            const artery::Neck& neck, double height) {
@@ -58,25 +54,15 @@ struct Outcome {
 /// To the end of the motion, also after the exercise is done: a clip may still slide. Forces are left out, since the
 /// script cannot know them. A narrowed vessel that lets its flow through is told and not refused.
 Outcome outcome(const fs::path& scene, double share_from, Progress& progress) {
-  Registry registry;
-  register_builtin(registry);
-  const auto loaded = load_simulation(scene, registry, 1);
-  if (!loaded.simulation) throw InputError("exercise 4 does not load:\n" + loaded.diagnostics.format());
-  Simulation& s = *loaded.simulation;
-  const Motion motion = load_motion(s.exercise()->motions().front()->file());
-  HeadlessRun run(s, motion);
-  const double end = motion.duration() + after_the_hands;
-  while (s.time() < end) {
-    run.step();
-    progress.share(share_from + s.time() / end / double(std::size(heights)));
-  }
+  const Rehearsal played(scene, "exercise 4", true,
+                         [&](double done) { progress.share(share_from + done / double(std::size(heights))); });
   Outcome out;
   bool narrowed_only = true;
   const auto tell = [&](int weight, const std::string& what) {
     out.flaws += weight;
     out.told += (out.told.empty() ? "" : ", ") + what;
   };
-  const ExerciseLog& log = s.exercise()->log();
+  const ExerciseLog& log = played.simulation().exercise()->log();
   for (const GoalState& g : log.goals())
     if (g.required && !g.done) tell(10, fmt::format("\"{}\" is not reached", g.text)), narrowed_only = false;
   for (const FaultState& f : log.faults())

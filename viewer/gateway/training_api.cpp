@@ -88,6 +88,13 @@ Ordered curves_json(const std::vector<training::LearningCurve>& curves) {
   return out;
 }
 
+template <class T>
+Ordered list_of(const std::vector<T>& values, Ordered (*one)(const T&)) {
+  Ordered out = Ordered::array();
+  for (const T& value : values) out.push_back(one(value));
+  return out;
+}
+
 Ordered history_json(const std::vector<training::ExerciseHistory>& history) {
   Ordered out = Ordered::array();
   for (const auto& h : history)
@@ -118,7 +125,13 @@ std::string query_value(std::string_view query, std::string_view name) {
 }
 
 TrainingApi::TrainingApi(Files files, std::function<void(const std::string&)> choose)
-    : files_(std::move(files)), choose_(std::move(choose)) {}
+    : files_(std::move(files)), choose_(std::move(choose)) {
+  if (files_.catalogue.empty()) return;
+  for (const Json& e : read_json(files_.catalogue))
+    if (e.is_object() && e.contains("scene") && e["scene"].is_string() && e.contains("picture") &&
+        e["picture"].is_string())
+      exercises_.push_back(e);
+}
 
 training::Store& TrainingApi::store() {
   if (files_.store.empty()) throw InputError("this session keeps nothing");
@@ -126,21 +139,11 @@ training::Store& TrainingApi::store() {
   return *store_;
 }
 
-nlohmann::json TrainingApi::exercises() const {
-  const Json list = files_.catalogue.empty() ? Json::array() : read_json(files_.catalogue);
-  Json out = Json::array();
-  for (const Json& e : list)
-    if (e.is_object() && e.contains("scene") && e["scene"].is_string() && e.contains("picture") &&
-        e["picture"].is_string())
-      out.push_back(e);
-  return out;
-}
-
 TrainingApi::Answer TrainingApi::get(std::string_view path, std::string_view query) {
   const auto value = [&](std::string_view name) { return query_value(query, name); };
   try {
     if (path == "exercises") {
-      Json list = exercises();
+      Json list = exercises_;
       for (Json& e : list) e["picture"] = !e["picture"].get<std::string>().empty();  // pages need no path
       return {200, dump(list)};
     }
@@ -148,20 +151,11 @@ TrainingApi::Answer TrainingApi::get(std::string_view path, std::string_view que
       const Json state = files_.choice.empty() ? Json() : read_json(files_.choice);
       return {200, dump(state.is_object() ? state : Json::object())};
     }
-    if (path == "people") {
-      Ordered out = Ordered::array();
-      if (!files_.store.empty())
-        for (const Person& p : store().persons()) out.push_back(person_json(p));
-      return {200, dump(out)};
-    }
-    if (path == "history")
-      return {200, files_.store.empty() ? "[]\n" : dump(history_json(store().history(value("person"))))};
-    if (path == "runs") {
-      Ordered out = Ordered::array();
-      if (!files_.store.empty())
-        for (const Run& r : store().runs(value("person"))) out.push_back(run_json(r));
-      return {200, dump(out)};
-    }
+    const bool listed = path == "people" || path == "history" || path == "runs";
+    if (listed && files_.store.empty()) return {200, "[]\n"};
+    if (path == "people") return {200, dump(list_of(store().persons(), person_json))};
+    if (path == "history") return {200, dump(history_json(store().history(value("person"))))};
+    if (path == "runs") return {200, dump(list_of(store().runs(value("person")), run_json))};
     if (path == "run") {
       const auto run = store().run(value("uuid"));
       return run ? Answer{200, dump(full_run_json(*run))} : error(404, "there is no such run");
@@ -201,7 +195,7 @@ TrainingApi::Answer TrainingApi::add_person(const Json& body) {
 TrainingApi::Answer TrainingApi::choose_exercise(const Json& body) {
   const std::string scene = text_of(body, "scene"), person = text_of(body, "person");
   bool known = false;
-  for (const Json& e : exercises()) known = known || e["scene"] == scene;
+  for (const Json& e : exercises_) known = known || e["scene"] == scene;
   if (!known) return error(404, fmt::format("there is no exercise {}", in_quotes(scene)));
   try {
     if (!person.empty() && !store().find(person))
@@ -214,7 +208,7 @@ TrainingApi::Answer TrainingApi::choose_exercise(const Json& body) {
 }
 
 fs::path TrainingApi::picture(const std::string& scene) const {
-  for (const Json& e : exercises())
+  for (const Json& e : exercises_)
     if (e["scene"] == scene) return fs::path(e["picture"].get<std::string>());
   return {};
 }

@@ -17,9 +17,10 @@ namespace insula::gateway {
 class TrainingApi {
  public:
   struct Files {
-    std::filesystem::path store;      ///< training store; empty: nobody is known, and nothing is kept
-    std::filesystem::path catalogue;  ///< exercises that may be chosen (engine/live/catalogue.h); empty: none
-    std::filesystem::path choice;     ///< the running exercise (engine/live/exercise_choice.h)
+    std::filesystem::path store;  ///< training store; empty: nobody is known, and nothing is kept
+    std::filesystem::path
+        catalogue;                 ///< read once; exercises that may be chosen (engine/live/catalogue.h); empty: none
+    std::filesystem::path choice;  ///< the running exercise (engine/live/exercise_choice.h)
   };
   /// choose: gets {"scene", "person"} of a choice that is allowed.
   TrainingApi(Files files, std::function<void(const std::string& json)> choose);
@@ -46,9 +47,9 @@ class TrainingApi {
   training::Store& store();
   Answer add_person(const nlohmann::json& body);
   Answer choose_exercise(const nlohmann::json& body);
-  nlohmann::json exercises() const;
 
   Files files_;
+  std::vector<nlohmann::json> exercises_;  ///< each with a scene and the file of its picture
   std::function<void(const std::string&)> choose_;
   std::unique_ptr<training::Store> store_;  ///< opened when it is first needed
 };

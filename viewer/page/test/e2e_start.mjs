@@ -64,7 +64,7 @@ try {
   const running = await choice();
   assert.deepEqual([running.scene, running.person], ['scenes/training/3_clipping.xml', 'P07']);
   await page.waitForFunction(() => window.__insula?.ready, null, patience);
-  await page.locator('[data-mode=practice], button', { hasText: /^Try/ }).first().click(patience);
+  await page.locator('[data-answer=practice]').click(patience);
   await page.waitForFunction(() => window.__insula.frames > 60, null, patience);
   check('another exercise begins without a terminal, under the name of the person');
 
@@ -82,10 +82,9 @@ try {
   assert.deepEqual(errors, []);
 } finally {
   await browser.close();
-  const ended = new Promise((resolve) => play.once('exit', resolve));
   play.removeAllListeners('exit');
-  play.once('exit', () => {});
+  const ended = new Promise((resolve) => play.once('exit', resolve));
   play.kill('SIGINT');
-  await Promise.race([new Promise((resolve) => play.once('exit', resolve)), ended]);
+  await ended;
   rmSync(folder, { recursive: true, force: true });
 }

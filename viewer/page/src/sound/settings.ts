@@ -48,12 +48,3 @@ export function writeSettings(store: Store | null, settings: SoundSettings): voi
     // A full or forbidden store: the choice lasts as long as the page.
   }
 }
-
-/** Throws in browsers that forbid it, so it is asked for with care. */
-export function browserStore(): Storage | null {
-  try {
-    return window.localStorage;
-  } catch {
-    return null;
-  }
-}

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sound of the page. Browsers let a page sound only after its user has done something there, so the audio begins
 // with the first key or click after sound was switched on. It rests while the page is hidden.
+import { browserStore } from '../browser_store';
 import type { Bundle } from '../bundle_types';
 import type { TimerView } from '../hud/state';
 import type { RenderFrame } from '../lcm';
 import { Desk } from './desk';
 import { type Heard, Listener } from './listener';
 import type { SoundReport } from './meter';
-import { browserStore, readSettings, type SoundSettings, writeSettings } from './settings';
+import { readSettings, type SoundSettings, writeSettings } from './settings';
 
 const gestures = ['pointerdown', 'keydown', 'touchend'] as const;
 

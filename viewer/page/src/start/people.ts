@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Who is here: a choice among those who are known, a guest, and a form for somebody new.
+import { browserStore } from '../browser_store';
 import { el } from '../hud/dom';
 import type { Api, Person } from './api';
 
@@ -68,7 +69,7 @@ export class People {
   async load(preferred: string): Promise<void> {
     this.people = await this.api.people();
     const names = this.people.map((p) => p.pseudonym);
-    const wanted = [preferred, localStorage.getItem(kept) ?? ''].find((n) => names.includes(n)) ?? '';
+    const wanted = [preferred, browserStore()?.getItem(kept) ?? ''].find((n) => names.includes(n)) ?? '';
     this.show(wanted);
   }
 
@@ -88,7 +89,7 @@ export class People {
   }
 
   private choose(person: string): void {
-    localStorage.setItem(kept, person);
+    browserStore()?.setItem(kept, person);
     this.changed(person);
   }
 
