@@ -19,8 +19,7 @@ struct ExerciseOutcome {
         text(exercise.text()),
         log(exercise.log()),
         metrics(exercise.metrics()),
-        has_guide(std::any_of(exercise.motions().begin(), exercise.motions().end(),
-                              [](const MotionEntry* m) { return m->guide(); })) {}
+        has_guide(std::ranges::any_of(exercise.motions(), [](const MotionEntry* m) { return m->guide(); })) {}
   std::string id, title, text;
   ExerciseLog log;
   std::vector<MetricValue> metrics;

@@ -104,6 +104,17 @@ void fill(Exercise& exercise) {
   exercise.log().goal(0, 4.5);  // the last required one: that is the end
 }
 
+TEST(ReportWriter, AnExerciseHasAGuideIfAnyOfItsMotionsIsOne) {
+  for (std::size_t motions = 0; motions < 4; ++motions) {
+    Exercise exercise;
+    for (std::size_t i = 0; i < motions; ++i) exercise.children.push_back(std::make_unique<MotionEntry>());
+    EXPECT_FALSE(ExerciseOutcome(exercise).has_guide) << motions;
+    if (motions == 0) continue;
+    exercise.motions().back()->guide.set(true);
+    EXPECT_TRUE(ExerciseOutcome(exercise).has_guide) << motions;
+  }
+}
+
 TEST(ReportJson, HasEveryKeyWithItsNumber) {
   Exercise exercise;
   fill(exercise);
