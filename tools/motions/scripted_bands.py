@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the reference bands of the exercises from scripted hands with seeded variation.
+"""Makes the reference bands of the exercises and skill tasks from scripted hands with seeded variation.
 
     python3 tools/motions/scripted_bands.py [--insula PROGRAM] [--seeds 12] [--jobs 2] [SCENE ...]
 
@@ -102,7 +102,8 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("scenes", nargs="*", type=pathlib.Path)
     options = parser.parse_args()
-    scenes = options.scenes or sorted((ROOT / "scenes/training").glob("[0-9]*.xml"))
+    shipped = [s for folder in ("training", "skills") for s in sorted((ROOT / "scenes" / folder).glob("[0-9]*.xml"))]
+    scenes = options.scenes or shipped
     for scene in scenes:
         make_bands(options.insula, scene.resolve(), options.seeds, options.jobs)
 
