@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the page's sources with TypeScript's parser: the messages of text(), and texts that a person would read although
-// they went past text().
+// Reads the page's sources with TypeScript's parser: the messages of text(), and texts that a person would read
+// although they went past text().
 import { readdirSync, readFileSync } from 'node:fs';
 import { join, relative } from 'node:path';
 import { fileURLToPath } from 'node:url';

@@ -167,8 +167,7 @@ const tellHands = () => {
   status.buttons = hands.hands.map((h) => [h.button1, h.button2]);
   status.active = hands.active;
 };
-const wanted = (hand: number) => guiding.wanted(hand);
-const hands: Hands = new Hands(scope, link, { toolPose, wanted }, tellHands, mayDrive);
+const hands: Hands = new Hands(scope, link, { toolPose, wanted: (h) => guiding.wanted(h) }, tellHands, mayDrive);
 const controllers = new ControllerHands(hands);
 listenForHands(hands, {
   ...{ canvas, scope, hud, hudRoot, toolPose, changed: tellHands },

@@ -32,7 +32,6 @@ import { ToolList } from './tool_list';
 import { short } from './tray';
 import { type ViewActions, ViewMenu } from './view_menu';
 import { Vitals } from './vitals';
-import { languageSelect } from '../languages/language_select';
 import { said } from '../languages/said';
 import { text } from '../languages/text';
 
@@ -313,12 +312,6 @@ export class Hud {
     reset.onclick = () => this.session.askReset();
     const help = el('button', { title: 'H', 'aria-haspopup': 'dialog' }, text('Help'));
     help.onclick = () => this.toggleHelp();
-    return el(
-      'div',
-      { class: 'controls' },
-      ...(this.role === 'observer' ? [] : [this.pause, reset]),
-      help,
-      languageSelect(),
-    );
+    return el('div', { class: 'controls' }, ...(this.role === 'observer' ? [] : [this.pause, reset]), help);
   }
 }

@@ -7,6 +7,7 @@ import { levels } from '../quality';
 import { angleRangeDeg, stereoModes, type StereoMode } from '../stereo';
 import { ask, type UserCommand } from './commands';
 import { el, setText } from './dom';
+import { languageSelect } from '../languages/language_select';
 import { said } from '../languages/said';
 import { text } from '../languages/text';
 import type { QualityName } from '../options';
@@ -86,7 +87,16 @@ export class ViewMenu {
       actions.stereo('xr');
     };
     this.ruler.onclick = () => actions.nextRuler();
-    this.root.append(this.quality, this.stereo, this.angle, this.enter, this.ruler, this.infrared, this.glow);
+    this.root.append(
+      this.quality,
+      this.stereo,
+      this.angle,
+      this.enter,
+      this.ruler,
+      this.infrared,
+      this.glow,
+      languageSelect(),
+    );
     this.showStereo('off', 5, false, false);
     this.showRuler('off');
     this.showGlow(false, []);

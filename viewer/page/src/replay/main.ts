@@ -15,6 +15,7 @@ import { Side } from './side';
 import { type ListedSession, listSessions, sessionOf } from './source';
 import { text } from '../languages/text';
 
+document.title = `Insula: ${text('recorded session')}`;
 const query = new URLSearchParams(location.search);
 const quality: QualityName | null = qualityNames.find((n) => n === query.get('quality')) ?? null;
 const sides = document.getElementById('sides')!;

@@ -5,6 +5,7 @@ import { Api } from './api';
 import { StartPage } from './start_page';
 import { text } from '../languages/text';
 
+document.title = `Insula: ${text('exercises')}`;
 const root = document.getElementById('start')!;
 const base = new URL('./', window.location.href);
 const page = new StartPage(root, new Api(base), () => {
