@@ -34,6 +34,7 @@ struct Options : insula::CommandLine {
 
   std::string element;
   fs::path output, folder, plugin_folder;
+  std::vector<fs::path> scenes;
   bool curriculum = false, no_browser = false, no_reload = false, no_report = false, no_record = false,
        list_only = false;
   insula::NewPluginOptions new_plugin;
@@ -66,6 +67,12 @@ void add_scene_commands(Options& c) {
   docs->add_option("-o,--output,folder", c.folder, "folder to write to")->required();
   docs->add_option("--plugins", c.plugin_folder, "folder of plugin sources, for their examples");
   docs->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_docs(x, c.folder, c.plugin_folder); }; });
+}
+
+void add_texts(Options& c) {
+  auto* command = c.app.add_subcommand("texts", "what persons read of scenes, as JSON, for those who translate it");
+  command->add_option("scene", c.scenes, "scene files")->required();
+  command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_texts(x, c.scenes); }; });
 }
 
 void add_new_plugin(Options& c) {
@@ -264,6 +271,7 @@ void add_tool_programs(Options& c) {
 
 void add_commands(Options& c) {
   add_scene_commands(c);
+  add_texts(c);
   add_new_plugin(c);
   add_devices(c);
   add_run(c);

@@ -2,6 +2,8 @@
 // The inventory of an example against what is known of it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "core/testing/example.h"
@@ -70,6 +72,22 @@ TEST(Inventory, RegionsOfAVesselHaveTheirAreas) {
     }
   ASSERT_GT(wall, 0);
   EXPECT_NEAR(sum, wall, 0.01 * wall);
+}
+
+TEST(Texts, EveryTextOfAScenesExerciseComesOnce) {
+  std::ostringstream out, err;
+  const std::filesystem::path scene = project / "scenes/training/3_clipping.xml";
+  ASSERT_EQ(cmd_texts({test::builtin(), out, err}, {scene, scene}), 0) << err.str();
+  const auto texts = nlohmann::json::parse(out.str());
+  const auto count = [&](const std::string& text, const std::string& kind) {
+    return std::count(texts.begin(), texts.end(), nlohmann::json{{"text", text}, {"kind", kind}});
+  };
+  EXPECT_EQ(count("Close the neck and keep both branches open", "goal"), 1);
+  EXPECT_EQ(count("The dome has ruptured", "fault"), 1);
+  EXPECT_EQ(count("Open the blades wide enough to pass the dome, and never press on it", "advice"), 1);
+  std::ostringstream none, errors;
+  EXPECT_EQ(cmd_texts({test::builtin(), none, errors}, {"nowhere.xml"}), 2);
+  EXPECT_EQ(nlohmann::json::parse(none.str()), nlohmann::json::array());
 }
 
 TEST(Inventory, ListNamesEverything) {

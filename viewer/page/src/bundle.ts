@@ -3,6 +3,8 @@
 import type * as types from './bundle_types';
 import { parseInventory } from './inventory';
 import { parseChannels, parseDrawables, parseMaterials } from './step_data/declarations';
+import { said } from './languages/said';
+import { text } from './languages/text';
 
 // The parts of scene.json that the engine alone writes: a wrong one fails where its file is read.
 // eslint-disable-next-line @typescript-eslint/no-explicit-any
@@ -77,12 +79,14 @@ export async function loadBundle(source: BundleSource, session: string): Promise
   const files = new Files(source);
   const json = await files.json('scene.json');
   if (json.version !== 2 && json.version !== 3)
-    throw new Error(`scene bundle version ${json.version} is not known to this page`);
+    throw new Error(
+      text('scene bundle version {version} is not known to this page', { version: String(json.version) }),
+    );
   const tools = await Promise.all(list(json.tools).map((t) => toolOf(files, t)));
   return {
     session,
-    title: json.title ?? '',
-    description: json.description ?? '',
+    title: said(json.title ?? ''),
+    description: said(json.description ?? ''),
     view: { eye: json.view.eye, target: json.view.target, up: json.view.up, fovDeg: json.view.fov_deg },
     bodies: await Promise.all(list(json.bodies).map((b) => bodyOf(files, b))),
     tools,
@@ -100,10 +104,10 @@ export async function loadBundle(source: BundleSource, session: string): Promise
 function exerciseOf(e: Json): types.ExerciseData {
   return {
     id: e.id ?? '',
-    title: e.title ?? '',
-    text: e.text ?? '',
-    goals: list(e.goals) as types.ExerciseData['goals'],
-    faults: list(e.faults) as types.ExerciseData['faults'],
+    title: said(e.title ?? ''),
+    text: said(e.text ?? ''),
+    goals: list(e.goals).map((g) => ({ id: g.id, text: said(g.text ?? '') })),
+    faults: list(e.faults).map((f) => ({ id: f.id, text: said(f.text ?? '') })),
     motions: Array.isArray(e.motions) ? e.motions.map(String) : [],
     guide: list(e.guide).map((g) => ({
       hand: g.hand === 'left' ? 'left' : 'right',
@@ -166,7 +170,7 @@ async function toolOf(files: Files, t: Json): Promise<types.ToolData> {
     id: t.id,
     hand: t.hand,
     kind: t.kind,
-    title: t.title || spoken(t.id),
+    title: t.title || t.id.replace(/_/g, ' '),
     hinges,
     picture: t.picture ? await files.address(t.picture) : null,
     properties: list(t.properties).map((p) => ({
@@ -217,8 +221,8 @@ function commandsOf(json: Json): types.CommandGroup[] {
   }));
 }
 
-/** "left_suction" -> "left suction". */
-export const spoken = (id: string): string => id.replace(/_/g, ' ');
+/** "left_suction" -> "left suction", in the reader's language. */
+export const spoken = (id: string): string => said(id.replace(/_/g, ' '));
 /** With a capital letter at its beginning. */
 export const sentence = (text: string): string => text.slice(0, 1).toUpperCase() + text.slice(1);
 

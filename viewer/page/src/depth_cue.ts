@@ -5,6 +5,8 @@
 import * as THREE from 'three';
 import { TextSprite } from './text_sprite';
 import type { Foot, TissueProbe } from './tissue_probe';
+import { fixed } from './languages/numbers';
+import { text } from './languages/text';
 
 /** Farther tips have no cue, m. */
 export const cueReachM = 0.015;
@@ -16,8 +18,8 @@ const colours = { away: 0x9fe8ff, touching: 0xffc14d };
 
 /** "4.5 mm": by half millimetres; "contact" at the tissue. */
 export function distanceText(distanceM: number): string {
-  if (distanceM < touchM) return 'contact';
-  return `${(Math.round(distanceM * 2000) / 2).toFixed(1)} mm`;
+  if (distanceM < touchM) return text('contact');
+  return `${fixed(Math.round(distanceM * 2000) / 2, 1)} mm`;
 }
 
 export class DepthCue {

@@ -5,6 +5,8 @@ import * as THREE from 'three';
 import type { Sight } from './camera';
 import { TextSprite } from './text_sprite';
 import type { TissueProbe } from './tissue_probe';
+import { fixed } from './languages/numbers';
+import { text } from './languages/text';
 
 export type RulerMode = 'off' | 'tool' | 'sight';
 export const rulerModes: readonly RulerMode[] = ['off', 'tool', 'sight'];
@@ -22,7 +24,7 @@ const numbers = Math.floor(Math.round(rulerReachM / tickM) / numbered);
 const colour = 0xfff2a8;
 const letters = [1, 0.95, 0.66] as const;
 
-export const millimetres = (m: number): string => `${(1000 * m).toFixed(1)} mm`;
+export const millimetres = (m: number): string => `${fixed(1000 * m, 1)} mm`;
 
 /**
  * Where the scale lies: it begins at `origin` and goes along the unit `along`; ticks lie along the unit `side`. scale:
@@ -181,7 +183,9 @@ export class DepthRuler {
     });
     this.end.setHeight(3.2 * percentM);
     this.end.sprite.position.copy(at(length)).addScaledVector(place.side, 3 * percentM);
-    this.end.write(this.lengthM === null ? `over ${millimetres(rulerReachM)}` : millimetres(length));
+    this.end.write(
+      this.lengthM === null ? text('over {distance}', { distance: millimetres(rulerReachM) }) : millimetres(length),
+    );
   }
 
   private drawGauge(pair: [THREE.Vector3, THREE.Vector3] | null, { axes, percentM }: RulerInput): void {
@@ -196,7 +200,7 @@ export class DepthRuler {
       .copy(pair[0])
       .lerp(pair[1], 0.5)
       .addScaledVector(axes.y, -6 * percentM);
-    this.apart.write(`${millimetres(apart)} apart`);
+    this.apart.write(text('{distance} apart', { distance: millimetres(apart) }));
   }
 
   private makeLine(points: number): THREE.LineSegments {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page's graphics context, which a browser takes away when the graphics card resets or runs out of memory. three
 // asks for it back; here is kept whether it is gone, and what must be drawn anew once it is there again.
+import { text } from './languages/text';
 
 export class Graphics {
   private lostMs: number | null = null;
@@ -31,8 +32,8 @@ export class Graphics {
     if (this.lostMs === null) return '';
     const soon = nowMs - this.lostMs < 10_000;
     const advice = soon
-      ? 'waiting for it; the exercise goes on …'
-      : 'reload the page if it does not come back; the exercise goes on';
-    return `The graphics card was reset: no picture\n${advice}`;
+      ? text('waiting for it; the exercise goes on …')
+      : text('reload the page if it does not come back; the exercise goes on');
+    return `${text('The graphics card was reset: no picture')}\n${advice}`;
   }
 }

@@ -9,6 +9,8 @@ import { toolCommands } from './hud/commands';
 import type { GuideView } from './hud/guide_panel';
 import type { RenderFrame } from './lcm';
 import { TargetGhost } from './target_ghost';
+import { said } from './languages/said';
+import { text } from './languages/text';
 
 /** A tool at its target needs no ghost. */
 const ghostFromM = 0.0015;
@@ -87,11 +89,13 @@ export class Guiding {
     this.view = { at, of, offset, nearM, nearRad, leftOver: 0, todo: '', waits: this.guide.waits(hand) };
     if (target.tool !== id) {
       const wanted = bundle.tools.find((t) => t.id === target.tool);
-      this.view.todo = `Take up the ${wanted?.title ?? target.tool}`;
+      this.view.todo = text('Take up: {tool}', { tool: said(wanted?.title ?? target.tool) });
     } else {
       this.turn = { hand, q: target.q };
       const choice = toChoose(target, frame, bundle);
-      this.view.todo = choice ? `Choose from the list: ${choice.title} (L)` : buttonsToDo(target, buttons);
+      this.view.todo = choice
+        ? text('Choose from the list: {tool} (L)', { tool: said(choice.title) })
+        : buttonsToDo(target, buttons);
       if (offset.distanceM > ghostFromM || offset.angleRad > ghostFromRad)
         this.ghost.show(frame, held, target.p, target.q);
     }
@@ -112,7 +116,7 @@ export class Guiding {
     this.aims.show(places);
     const offset = offsetOf(p, q, { p: to, q }, axes);
     const near = offset.distanceM < sweepFromM;
-    const todo = near ? 'Sweep the edge across it' : '';
+    const todo = near ? text('Sweep the edge across it') : '';
     const leftOver = places.length;
     this.view = { at: 0, of: 0, leftOver, offset, nearM: sweepFromM, nearRad: Math.PI, todo, waits: false };
     if (offset.distanceM > ghostFromM) this.ghost.show(frame, held, to, q);
@@ -142,8 +146,8 @@ export function buttonsToDo(target: Buttons, now: Buttons): string {
   const parts = ([1, 2] as const).flatMap((b) => {
     const [wanted, is] = b === 1 ? [target.button1, now.button1] : [target.button2, now.button2];
     if (wanted === is) return [];
-    return [wanted ? `hold button ${b} (${b === 1 ? 'Space' : 'B'})` : `let button ${b} go`];
+    if (!wanted) return [text('let button {button} go', { button: b })];
+    return [b === 1 ? text('hold button 1 (Space)') : text('hold button 2 (B)')];
   });
-  const text = parts.join(', ');
-  return text === '' ? '' : `At the target: ${text}`;
+  return parts.length === 0 ? '' : text('At the target: {what}', { what: parts.join(', ') });
 }

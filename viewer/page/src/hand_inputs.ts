@@ -7,6 +7,7 @@ import { HandPointers } from './hand_pointers';
 import type { Hands, ToolPoses } from './hands';
 import { firstControl } from './hud/focus';
 import type { Hud } from './hud/hud';
+import { text } from './languages/text';
 
 export interface Field {
   canvas: HTMLCanvasElement;
@@ -21,6 +22,7 @@ export interface Field {
 
 export function listenForHands(hands: Hands, field: Field): void {
   const { canvas, scope, hud } = field;
+  canvas.setAttribute('aria-label', text('operating field'));
   new HandPointers(canvas, scope, hands, (x, y) => field.focusAt(x, y));
   new GamepadHands(
     hands,

@@ -4,6 +4,7 @@
 import * as THREE from 'three';
 import { type Controller, readControllers } from './controller_hands';
 import { Eyepiece, takeBoth, type LensSettings } from './lens';
+import { text } from './languages/text';
 
 const screenM = 1.5;
 const distanceM = 1.35;
@@ -68,7 +69,7 @@ export class Headset {
 
   /** Must be called from a click. Throws when the headset refuses. */
   async enter(): Promise<void> {
-    if (!navigator.xr) throw new Error('this browser has no WebXR');
+    if (!navigator.xr) throw new Error(text('this browser has no WebXR'));
     const session = await navigator.xr.requestSession('immersive-vr', { optionalFeatures: ['local-floor'] });
     this.renderer.xr.enabled = true;
     this.renderer.xr.setReferenceSpaceType('local');

@@ -35,6 +35,7 @@ import { Reading } from './step_data/reading';
 import { ViewModes } from './view_modes';
 import { TakeBack } from './take_back';
 import { quaternion, vector, World } from './world';
+import { text } from './languages/text';
 
 const options = parseOptions(location.search);
 const mayDrive = options.role === 'trainee';
@@ -166,8 +167,7 @@ const tellHands = () => {
   status.buttons = hands.hands.map((h) => [h.button1, h.button2]);
   status.active = hands.active;
 };
-const wanted = (hand: number) => guiding.wanted(hand);
-const hands: Hands = new Hands(scope, link, { toolPose, wanted }, tellHands, mayDrive);
+const hands: Hands = new Hands(scope, link, { toolPose, wanted: (h) => guiding.wanted(h) }, tellHands, mayDrive);
 const controllers = new ControllerHands(hands);
 listenForHands(hands, {
   ...{ canvas, scope, hud, hudRoot, toolPose, changed: tellHands },
@@ -178,11 +178,13 @@ listenForHands(hands, {
 });
 
 let ghost: RunGhost | null = null;
-if (options.ghost !== '')
-  void import('./replay/live_ghost')
+if (options.ghost !== '') {
+  const no = (e: unknown) => text('No ghost of {name}: {why}', { name: options.ghost, why: String(e) });
+  import('./replay/live_ghost')
     .then((m) => m.openGhost(options.ghost))
     .then((run) => scene.add((ghost = run).root))
-    .catch((e: unknown) => hud.refuse(`No ghost of ${options.ghost}: ${String(e)}`, performance.now()));
+    .catch((e: unknown) => hud.refuse(no(e), performance.now()));
+}
 
 function letHandsGo(): void {
   hands.releaseAll();

@@ -6,6 +6,7 @@ import type { Sight } from './camera';
 import { millimetres } from './depth_ruler';
 import type { Within } from './take_back';
 import { TextSprite } from './text_sprite';
+import { spoken } from './bundle';
 
 /** Farther things have no mark, m. */
 export const markedM = 0.04;
@@ -45,7 +46,7 @@ export class ReachMark {
     }
     this.label.setHeight(2.8 * percentM);
     this.label.sprite.position.copy(within.place).addScaledVector(axes.x, 6 * percentM);
-    this.label.write(`${within.tool.kind} ${millimetres(within.distanceM)}`);
+    this.label.write(`${spoken(within.tool.kind)} ${millimetres(within.distanceM)}`);
   }
 
   dispose(): void {

@@ -9,6 +9,7 @@ import { status } from './status';
 import type { Reading } from './step_data/reading';
 import type { Within } from './take_back';
 import type { World } from './world';
+import { text } from './languages/text';
 
 export interface Picture {
   world: World | null;
@@ -63,7 +64,7 @@ export function showHud(
   const freshHaptic = quiet(heard.haptic, 3000) ? null : haptic;
   hud.showMachine(quiet(heard.frame, 2500) ? null : frame, freshHaptic, status.fps, status.quality);
   const alive = link.open && !quiet(heard.frame, 1000);
-  hud.showLink(link.open ? (alive ? 'connected' : 'gateway only') : 'disconnected', alive);
+  hud.showLink(link.open ? (alive ? text('connected') : text('gateway only')) : text('disconnected'), alive);
   hud.showBanner(
     bannerText({
       graphics: graphicsLost,

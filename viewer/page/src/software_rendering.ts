@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether the browser draws without a graphics card, and what to do about it.
+import { text } from './languages/text';
 
 const software = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
@@ -8,8 +9,9 @@ export function adviceFor(renderer: string): string {
   const name = software.exec(renderer)?.[0];
   if (!name) return '';
   return (
-    `Pictures are slow: this browser draws by software (${name}). Turn on hardware acceleration in its settings, ` +
-    'or keep the quality Draft and a small window.'
+    text('Pictures are slow: this browser draws by software ({name}).', { name }) +
+    ' ' +
+    text('Turn on hardware acceleration in its settings, or keep the quality Draft and a small window.')
   );
 }
 

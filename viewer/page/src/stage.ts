@@ -6,6 +6,7 @@ import { Lens } from './lens';
 import { makeEnvironment, plainRoom } from './materials/environment';
 import type { Level } from './quality';
 import type { StereoMode } from './stereo';
+import { text } from './languages/text';
 
 /** Share of the room's light that reaches the field. */
 const roomIntensity = 0.42;
@@ -151,8 +152,9 @@ function makeRenderer(canvas: HTMLCanvasElement): THREE.WebGLRenderer {
     renderer = new THREE.WebGLRenderer({ canvas, antialias: false, powerPreference: 'high-performance' });
   } catch (e) {
     document.body.textContent =
-      'This browser offers no WebGL 2, which the picture needs. ' +
-      'Switch on hardware acceleration or use another browser.';
+      text('This browser offers no WebGL 2, which the picture needs.') +
+      ' ' +
+      text('Switch on hardware acceleration or use another browser.');
     throw e;
   }
   renderer.toneMapping = THREE.ACESFilmicToneMapping;

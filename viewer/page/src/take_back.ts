@@ -6,6 +6,9 @@ import type { Bundle, ToolData } from './bundle_types';
 import { toolState } from './hand_tool';
 import { toolCommands } from './hud/commands';
 import type { RenderFrame } from './lcm';
+import { fixed } from './languages/numbers';
+import { said } from './languages/said';
+import { text } from './languages/text';
 
 type FrameTool = RenderFrame['tool'][number];
 
@@ -93,7 +96,13 @@ export class TakeBack {
 
 /** "Straight clip: 6.2 mm away, turned by 12°; button 2 (B) takes it back". */
 export function takeBackText({ tool, distanceM, angleRad, taken }: Within): string {
-  const where = `${(1000 * distanceM).toFixed(1)} mm away, turned by ${Math.round((180 * angleRad) / Math.PI)}°`;
-  const then = taken === null ? '' : taken ? '; button 2 (B) takes it back' : '; out of reach';
-  return `${tool.title}: ${where}${then}`;
+  const values = {
+    tool: said(tool.title),
+    distance: `${fixed(1000 * distanceM, 1)} mm`,
+    angle: `${Math.round((180 * angleRad) / Math.PI)}°`,
+  };
+  if (taken === null) return text('{tool}: {distance} away, turned by {angle}', values);
+  return taken
+    ? text('{tool}: {distance} away, turned by {angle}; button 2 (B) takes it back', values)
+    : text('{tool}: {distance} away, turned by {angle}; out of reach', values);
 }

@@ -4,6 +4,7 @@
 import { type RulerMode, rulerModes } from './depth_ruler';
 import type { Headset } from './headset';
 import { clampAngle, type StereoMode } from './stereo';
+import { text } from './languages/text';
 
 export interface ViewOutputs {
   infrared(on: boolean): void;
@@ -71,7 +72,7 @@ export class ViewModes {
     this.headset.enter().then(
       () => this.tell(),
       (e: unknown) => {
-        this.out.refuse(`The headset is not ready: ${e instanceof Error ? e.message : String(e)}`);
+        this.out.refuse(text('The headset is not ready: {why}', { why: e instanceof Error ? e.message : String(e) }));
         this.setStereo('off');
       },
     );

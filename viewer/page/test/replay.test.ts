@@ -214,7 +214,9 @@ describe('timeline', () => {
     expect(valueAt(t.hands[0]!, 0.2)).toBe(0.5);
     expect(valueAt(t.hands[1]!, 0.2)).toBeNaN();
     expect(valueAt(t.hands[0]!, 0.05)).toBeNaN();
-    expect(t.metrics.map((m) => [m.text, m.unit, ...m.values])).toEqual([['Length of the path, left', 'm', 0.2, 0.1]]);
+    expect(t.metrics.map((m) => [m.text, m.unit, ...m.values])).toEqual([
+      ['Length of the path, left hand', 'm', 0.2, 0.1],
+    ]);
     expect(t.channels.map((c) => [c.id, c.unit, c.values[0]])).toEqual([['artery.flow', 'm^3/s', 3e-6]]);
   });
   it('has key moments: what happened first, the largest forces, the end', () => {

@@ -6,6 +6,8 @@ import { indexedGeometry } from '../indexed_geometry';
 import { TextSprite } from '../text_sprite';
 import type { DrawableContext, Drawn } from './drawn';
 import { lookOf, moving } from './look';
+import { quantity, significant } from '../languages/numbers';
+import { said } from '../languages/said';
 
 export class Patch implements Drawn {
   readonly root: THREE.Mesh;
@@ -74,8 +76,8 @@ export function placeDisc(disc: THREE.Object3D, data: Float32Array): THREE.Vecto
 
 /** Text of a label: "{}" is replaced by the value in its unit. */
 export function labelText(text: string, value: number, unit: string): string {
-  const shown = Number.isFinite(value) ? `${Number(value.toPrecision(3))}${unit ? ` ${unit}` : ''}` : '–';
-  return text.replaceAll('{}', shown);
+  const shown = Number.isFinite(value) ? quantity(significant(value, 3), unit) : '–';
+  return said(text).replaceAll('{}', shown);
 }
 
 const labelHeightM = 0.0035;

@@ -3,12 +3,17 @@
 // ticked, which at the start are those that their component shows. Channels of one component and unit
 // share a chart.
 import { spoken } from '../bundle';
-import { byComponent, type Channels, channelText } from '../step_data/channels';
+import { byComponent, type Channels, channelText, shortName } from '../step_data/channels';
 import type { ChannelData } from '../step_data/declarations';
 import { TimeChart } from './curves';
 import { el, setText } from './dom';
+import { said } from '../languages/said';
 
 const period = 0.05;
+
+/** "parent: pressure". */
+const nameOf = (c: ChannelData): string =>
+  c.group === '' ? said(shortName(c)) : `${spoken(c.group)}: ${said(shortName(c))}`;
 
 /** Which channels share a chart: of one component and unit. */
 export function chartGroups(channels: readonly ChannelData[]): ChannelData[][] {
@@ -81,15 +86,15 @@ export class ChannelCurves {
     };
     const text = el('span', { class: 'value' }, '–');
     this.values.push({ channel, text });
-    return el('label', { title: channel.doc }, box, el('span', {}, spoken(channel.name)), text);
+    return el('label', { title: said(channel.doc) }, box, el('span', {}, nameOf(channel)), text);
   }
 
   /** Charts of what is ticked; they begin anew. */
   private arrange(): void {
     this.drawn = chartGroups(this.all.filter((c) => this.ticked.has(c))).map((channels) => {
       const { component, display } = channels[0]!;
-      const names = channels.map((c) => spoken(c.name));
-      const chart = new TimeChart(`${component} ${names.join(', ')}`, display.unit, names);
+      const names = channels.map(nameOf);
+      const chart = new TimeChart(`${spoken(component)} ${names.join(', ')}`, display.unit, names);
       const ids = channels.map((c) => c.id).join(' ');
       const root = el('div', { 'data-channels': ids }, el('h2', {}, spoken(component)), chart.root);
       return { component, channels, chart, root };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers over the last ten seconds, as curves of one unit in one chart.
 import { el } from './dom';
+import { significant } from '../languages/numbers';
+import { text } from '../languages/text';
 
 const spanS = 10;
 const colours = ['#7cc4ff', '#f0b64a', '#5fcf92', '#f2604f', '#c79bff', '#e9edf0'];
@@ -88,11 +90,13 @@ function drawGrid(
     c.moveTo(f.left, y(v));
     c.lineTo(f.right, y(v));
     c.stroke();
-    const number = String(Number(v.toPrecision(3)));
+    const number = significant(v, 3);
     if (k !== 1) c.fillText(k === 2 && unit ? `${number} ${unit}` : number, 0, y(v) + 6, f.left + 60);
   });
-  c.fillText('−10 s', f.left, f.bottom + 20);
-  c.fillText('now', f.right - 36, f.bottom + 20);
+  c.fillText(`−${spanS} s`, f.left, f.bottom + 20);
+  c.textAlign = 'right';
+  c.fillText(text('now'), f.right, f.bottom + 20);
+  c.textAlign = 'left';
 }
 
 /** Next of 1, 2, 5 times a power of ten, at least as large; 0 for 0. */

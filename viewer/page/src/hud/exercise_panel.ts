@@ -5,6 +5,8 @@ import { el, setText } from './dom';
 import { Progress } from './progress';
 import { modeTitles } from './session_panel';
 import { clockText, type HudState } from './state';
+import { said } from '../languages/said';
+import { text } from '../languages/text';
 
 export class ExercisePanel {
   readonly root: HTMLElement;
@@ -56,7 +58,10 @@ export class ExercisePanel {
   }
 
   private showRecording({ recording, unrecorded }: HudState): void {
-    setText(this.recording, unrecorded ? `Not recorded: ${unrecorded}` : recording ? '● Recorded' : '');
+    setText(
+      this.recording,
+      unrecorded ? text('Not recorded: {why}', { why: said(unrecorded) }) : recording ? text('● Recorded') : '',
+    );
     this.recording.title = recording;
     this.recording.hidden = !recording && !unrecorded;
     this.recording.classList.toggle('bad', unrecorded !== '');

@@ -7,6 +7,9 @@ import type { HandState } from '../hands';
 import { forceBar, forceLevel } from './state';
 import { Tray } from './tray';
 import type { UserCommand } from './commands';
+import { fixed } from '../languages/numbers';
+import { said } from '../languages/said';
+import { text } from '../languages/text';
 
 export interface HandActions {
   run(command: UserCommand): void;
@@ -31,9 +34,9 @@ export function depthText(
 ): string {
   const tip = tips[hand] ?? null;
   return [
-    tip === null ? '' : `tip ${distanceText(tip / 1000)}`,
-    hand !== active || ruler === null ? '' : `ruler ${ruler.toFixed(1)} mm`,
-    hand !== active || apart === null ? '' : `tips ${apart.toFixed(1)} mm apart`,
+    tip === null ? '' : text('tip {distance}', { distance: distanceText(tip / 1000) }),
+    hand !== active || ruler === null ? '' : text('ruler {distance}', { distance: `${fixed(ruler, 1)} mm` }),
+    hand !== active || apart === null ? '' : text('tips {distance} apart', { distance: `${fixed(apart, 1)} mm` }),
   ]
     .filter((t) => t !== '')
     .join(' · ');
@@ -51,7 +54,7 @@ export interface HandView extends HandState {
 }
 
 /** Not by colour alone. */
-const levelWords = { good: 'gentle', high: 'high', too_much: 'too much' };
+const levelWords = { good: text('gentle'), high: text('high'), too_much: text('too much') };
 
 export class HandPanel {
   readonly root = el('div', { class: 'hand' });
@@ -61,7 +64,11 @@ export class HandPanel {
   private readonly number = el('span', { class: 'force' }, '–');
   private readonly level = el('span', { class: 'level' });
   private readonly fill = el('i');
-  private readonly giveBack = el('button', { class: 'give-back', title: 'give the hand back (G)' }, 'Give back');
+  private readonly giveBack = el(
+    'button',
+    { class: 'give-back', title: text('give the hand back (G)') },
+    text('Give back'),
+  );
   private readonly hold = el('button', { class: 'hold', 'aria-pressed': 'false' });
   private readonly undo = el('button', { class: 'undo' }, '↶');
   private readonly depth = el('div', { class: 'depth' });
@@ -71,8 +78,8 @@ export class HandPanel {
 
   constructor(hand: number, actions: HandActions, mayDrive: boolean) {
     this.tray = new Tray((c) => actions.run(c), mayDrive);
-    setText(this.name, hand === 0 ? 'Left' : 'Right');
-    const head = el('button', { class: 'choose', title: 'drive this hand' }, this.name, this.tag);
+    setText(this.name, hand === 0 ? text('Left') : text('Right'));
+    const head = el('button', { class: 'choose', title: text('drive this hand') }, this.name, this.tag);
     head.onclick = () => actions.chooseHand(hand);
     this.giveBack.onclick = () => actions.releaseHand(hand);
     this.hold.onclick = () => {
@@ -94,7 +101,7 @@ export class HandPanel {
   show({ force, kind, depth, reach, active, taken, resting, buttons }: HandView): void {
     this.root.classList.toggle('active', active);
     this.root.classList.toggle('taken', taken);
-    setText(this.tag, taken ? `${kind}, yours` : kind);
+    setText(this.tag, taken ? text('{tool}, yours', { tool: kind }) : kind);
     this.giveBack.hidden = !taken;
     this.showHold(resting);
     setText(this.depth, depth);
@@ -103,10 +110,13 @@ export class HandPanel {
     this.latches.forEach((latch, k) => {
       const b = buttons[k] ?? { on: false, latched: false };
       latch.setAttribute('aria-pressed', String(b.on));
-      latch.title = b.on ? `let button ${k + 1} go` : `hold button ${k + 1} until it is let go`;
-      setText(latch, `${b.latched ? '🔒' : b.on ? '●' : '○'} ${k + 1}${b.latched ? ' held' : ''}`);
+      const button = k + 1;
+      latch.title = b.on
+        ? text('let button {button} go', { button })
+        : text('hold button {button} until it is let go', { button });
+      setText(latch, b.latched ? text('🔒 {button} held', { button }) : `${b.on ? '●' : '○'} ${button}`);
     });
-    setText(this.number, force === null ? '–' : `${force.toFixed(2)} N`);
+    setText(this.number, force === null ? '–' : `${fixed(force, 2)} N`);
     this.fill.style.width = `${force === null ? 0 : forceBar(force) * 100}%`;
     const level = force === null ? 'good' : forceLevel(force);
     this.root.dataset.level = level;
@@ -116,10 +126,10 @@ export class HandPanel {
   private showHold(resting: boolean): void {
     this.resting = resting;
     this.hold.setAttribute('aria-pressed', String(resting));
-    this.hold.title = resting ? 'go on with this hand' : 'hold this hand here and take the other one (X)';
-    setText(this.hold, resting ? '📌 holds' : 'Hold');
+    this.hold.title = resting ? text('go on with this hand') : text('hold this hand here and take the other one (X)');
+    setText(this.hold, resting ? text('📌 holds') : text('Hold'));
     const undone = this.tray.undone;
     this.undo.hidden = undone === null;
-    this.undo.title = undone ? `back to: ${undone.title} (Z)` : '';
+    this.undo.title = undone ? text('back to: {tool} (Z)', { tool: said(undone.title) }) : '';
   }
 }

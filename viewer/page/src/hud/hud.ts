@@ -17,6 +17,7 @@ import { GuidePanel, type GuideView } from './guide_panel';
 import { type DepthView, depthText, type HandActions, HandPanel } from './hand_panel';
 import { HapticPanel } from './haptic';
 import { Help } from './help';
+import { machineText } from './machine_text';
 import { InstructorPanel } from './instructor';
 import { InventoryPanel } from './inventory_panel';
 import type { Metrics } from './metrics';
@@ -31,6 +32,8 @@ import { ToolList } from './tool_list';
 import { short } from './tray';
 import { type ViewActions, ViewMenu } from './view_menu';
 import { Vitals } from './vitals';
+import { said } from '../languages/said';
+import { text } from '../languages/text';
 
 export interface HudActions extends ViewActions, HandActions, SoundActions, TouchActions {
   /** Of a scene that is looked at: highlights it; null: nothing. */
@@ -75,14 +78,14 @@ export class Hud {
   private readonly guide: GuidePanel;
   private readonly tabs: Tabs;
   private readonly inventory: InventoryPanel;
-  private readonly notice = new NoticePanel('The saved scene has errors. What runs is the scene before.');
-  private readonly problems = new NoticePanel('Data from the engine cannot be shown.');
+  private readonly notice = new NoticePanel(text('The saved scene has errors. What runs is the scene before.'));
+  private readonly problems = new NoticePanel(text('Data from the engine cannot be shown.'));
   private readonly message = el('div', { class: 'message', role: 'status' });
   private readonly banner = el('div', { class: 'banner', role: 'status' });
   private readonly link = el('span', { class: 'link' });
   private readonly machine = el('span', { class: 'machine' });
   private readonly haptic = new HapticPanel();
-  private readonly pause = el('button', { class: 'timed' }, 'Pause');
+  private readonly pause = el('button', { class: 'timed' }, text('Pause'));
   private readonly hands: HandPanel[];
   private bundle: Bundle | null = null;
   private state: HudState | null = null;
@@ -123,21 +126,20 @@ export class Hud {
       this.view.root,
       this.sound.root,
     );
-    const warning = el('span', { class: 'warn' }, 'For training only. Not for patient care.');
+    const warning = el('span', { class: 'warn' }, text('For training only. Not for patient care.'));
     const notices = el('div', { class: 'notices' }, this.notice.root, this.problems.root);
     const left = el('div', { class: 'column left' }, this.vitals.root, this.exercise.root, this.inventory.root);
     const right = el('div', { class: 'column right' }, handsPanel, ...(this.instructor ? [this.instructor.root] : []));
     this.tabs = new Tabs(root, [
-      { name: 'left', text: 'Patient and exercise' },
-      { name: 'right', text: role === 'instructor' ? 'Commands' : 'Hands and tools' },
+      { name: 'left', text: text('Patient and exercise') },
+      { name: 'right', text: role === 'instructor' ? text('Commands') : text('Hands and tools') },
     ]);
     root.append(
       left,
       right,
       el('div', { class: 'under' }, this.guide.root, ...(mayDrive ? [makeTouch(actions)] : []), this.tabs.root),
       el('footer', {}, warning, this.haptic.root, this.machine, this.link),
-      ...[this.message, this.banner, this.toasts.root, notices],
-      ...[...this.session.roots, this.help.root],
+      ...[this.message, this.banner, this.toasts.root, notices, ...this.session.roots, this.help.root],
     );
     returnFocusToField(root, field);
   }
@@ -205,7 +207,7 @@ export class Hud {
     this.vitals.show(channels, stowed, frame.sim_time_s);
     this.instructor?.show(channels, stowed, forces, frame.sim_time_s);
     this.pause.dataset.paused = frame.paused ? '1' : '';
-    setText(this.pause, frame.paused ? 'Resume' : 'Pause');
+    setText(this.pause, frame.paused ? text('Resume') : text('Pause'));
   }
 
   /** Five times a second. */
@@ -221,32 +223,29 @@ export class Hud {
     // What chance or the instructor brings, the trainee sees in the field and not in words.
     if (e.kind === 'command' || e.kind === 'complication' || e.kind === 'read') return;
     if (e.kind === 'refused') {
-      if (this.role !== 'observer') this.toasts.refuse(e.text, nowMs);
+      if (this.role !== 'observer') this.toasts.refuse(said(e.text), nowMs);
     } else if (e.kind === 'message' && e.id === 'message') {
       const read = () => {
         if (this.role === 'trainee') this.actions.run({ command: 'read', argument: e.text });
       };
       if (this.role !== 'instructor') this.toasts.instruct(e.text, read);
-    } else if (e.text) this.say(e.text, e.kind, nowMs);
+    } else if (e.text) this.say(said(e.text), e.kind, nowMs);
   }
 
   showMachine(f: RenderFrame | null, haptic: HapticStatus | null, fps: number, quality: string): void {
-    const parts: string[] = [];
-    if (f) parts.push(`step ${f.step_ms.toFixed(1)} / ${f.step_period_ms.toFixed(1)} ms`, `${f.rows} rows`);
     this.haptic.show(haptic, f?.paused ?? false);
-    parts.push(`${fps.toFixed(0)} fps ${quality}`);
-    setText(this.machine, parts.join('   '));
+    setText(this.machine, machineText(f, fps, quality));
     this.machine.classList.toggle('slow', !!f && f.step_ms > f.step_period_ms);
   }
 
-  showLink(text: string, ok: boolean): void {
-    setText(this.link, text);
+  showLink(words: string, ok: boolean): void {
+    setText(this.link, words);
     this.link.classList.toggle('ok', ok);
   }
 
-  showBanner(text: string): void {
-    setText(this.banner, text);
-    this.banner.hidden = text === '';
+  showBanner(words: string): void {
+    setText(this.banner, words);
+    this.banner.hidden = words === '';
   }
 
   /** What the loader says of a saved scene; empty: nothing. */
@@ -260,8 +259,8 @@ export class Hud {
   }
 
   /** Something about this machine that its user should know; '': nothing. */
-  advise(text: string): void {
-    if (text !== '') this.toasts.advise(text);
+  advise(words: string): void {
+    if (words !== '') this.toasts.advise(words);
   }
 
   refuse(why: string, nowMs: number): void {
@@ -276,8 +275,8 @@ export class Hud {
     this.toasts.tick(nowMs);
   }
 
-  private say(text: string, kind: string, nowMs: number): void {
-    setText(this.message, `${kind === 'goal' ? '✓ ' : kind === 'fault' ? '✗ ' : ''}${text}`);
+  private say(words: string, kind: string, nowMs: number): void {
+    setText(this.message, `${kind === 'goal' ? '✓ ' : kind === 'fault' ? '✗ ' : ''}${words}`);
     this.message.dataset.kind = kind;
     this.message.classList.add('on');
     this.messageUntil = nowMs + 3500;
@@ -292,7 +291,10 @@ export class Hud {
   private showState(s: HudState): void {
     this.exercise.showState(s);
     if (s.state === 'done' || s.state === 'failed') {
-      setText(this.message, s.state === 'done' ? '✓ Exercise complete' : `✗ ${s.message || 'Exercise failed'}`);
+      setText(
+        this.message,
+        s.state === 'done' ? `✓ ${text('Exercise complete')}` : `✗ ${s.message || text('Exercise failed')}`,
+      );
       this.message.dataset.kind = s.state === 'done' ? 'goal' : 'fault';
       this.message.classList.add('on');
       this.messageUntil = 0;
@@ -306,9 +308,9 @@ export class Hud {
       };
     };
     ask(this.pause, () => (this.pause.dataset.paused ? 'resume' : 'pause'));
-    const reset = el('button', { class: 'timed', 'aria-haspopup': 'dialog' }, 'Reset');
+    const reset = el('button', { class: 'timed', 'aria-haspopup': 'dialog' }, text('Reset'));
     reset.onclick = () => this.session.askReset();
-    const help = el('button', { title: 'H', 'aria-haspopup': 'dialog' }, 'Help');
+    const help = el('button', { title: 'H', 'aria-haspopup': 'dialog' }, text('Help'));
     help.onclick = () => this.toggleHelp();
     return el('div', { class: 'controls' }, ...(this.role === 'observer' ? [] : [this.pause, reset]), help);
   }

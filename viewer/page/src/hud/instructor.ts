@@ -11,44 +11,50 @@ import { el } from './dom';
 import { MetricTable } from './metric_table';
 import type { MetricView } from './metrics';
 import { clockText } from './state';
+import { fixed, quantity } from '../languages/numbers';
+import { said } from '../languages/said';
+import { text } from '../languages/text';
 
 const logLines = 120;
 export class InstructorPanel {
   readonly root = el('section', { class: 'panel instructor' });
-  private readonly forces = new TimeChart('forces of the hands over ten seconds', 'N', ['left', 'right']);
+  private readonly forces = new TimeChart(text('forces of the hands over ten seconds'), 'N', [
+    text('left'),
+    text('right'),
+  ]);
   private readonly curves = new ChannelCurves();
-  private readonly metrics = new MetricTable('Metrics until now');
+  private readonly metrics = new MetricTable(text('Metrics until now'));
   private readonly commands = el('div', { class: 'commands' });
   /** By component and command, what sets a slider to a value that has been set, by whomever. */
   private readonly sliders = new Map<string, { start: number; set: (value: number) => void }>();
-  private readonly log = el('ol', { class: 'log', 'aria-label': 'events' });
+  private readonly log = el('ol', { class: 'log', 'aria-label': text('events') });
 
   constructor(private readonly run: (c: UserCommand) => void) {
-    const text = el('input', {
+    const words = el('input', {
       type: 'text',
-      placeholder: 'Message to the trainee',
+      placeholder: text('Message to the trainee'),
       maxlength: '380',
-      'aria-label': 'message to the trainee',
+      'aria-label': text('message to the trainee'),
     });
-    const send = el('button', {}, 'Send');
-    const form = el('form', { class: 'ask' }, text, send);
+    const send = el('button', {}, text('Send'));
+    const form = el('form', { class: 'ask' }, words, send);
     form.onsubmit = (e) => {
       e.preventDefault();
-      const c = message(text.value);
+      const c = message(words.value);
       if (c) this.run(c);
-      text.value = '';
+      words.value = '';
     };
     this.root.append(
       // What an emergency needs comes first.
       this.commands,
-      el('h2', {}, 'Trainee'),
+      el('h2', {}, text('Trainee')),
       form,
-      el('h2', {}, 'Events'),
+      el('h2', {}, text('Events')),
       this.log,
-      el('h2', {}, 'Forces'),
+      el('h2', {}, text('Forces')),
       this.forces.root,
       this.metrics.root,
-      el('h2', {}, 'Channels'),
+      el('h2', {}, text('Channels')),
       this.curves.root,
     );
   }
@@ -77,9 +83,9 @@ export class InstructorPanel {
     this.curves.show(channels, stowed, timeS);
   }
 
-  addEvent(timeS: number, kind: string, id: string, text: string): void {
+  addEvent(timeS: number, kind: string, id: string, what: string): void {
     if (kind === 'command' && id === 'ask') {
-      const [component, command, value] = text.split(' ');
+      const [component, command, value] = what.split(' ');
       this.sliders.get(`${component} ${command}`)?.set(Number(value));
     }
     if (kind === 'reset') for (const s of this.sliders.values()) s.set(s.start);
@@ -88,14 +94,14 @@ export class InstructorPanel {
       { 'data-kind': kind },
       el('time', {}, clockText(timeS)),
       el('b', {}, spoken(kind)),
-      ` ${[spoken(id), text].filter((x) => x !== '').join(': ')}`,
+      ` ${[spoken(id), kind === 'command' ? what : said(what)].filter((x) => x !== '').join(': ')}`,
     );
     this.log.prepend(line);
     while (this.log.childElementCount > logLines) this.log.lastElementChild!.remove();
   }
 
   private makeCommand(id: string, c: CommandData): HTMLElement {
-    const go = el('button', { title: c.doc, 'data-ask': `${id} ${c.name}` }, spoken(c.name));
+    const go = el('button', { title: said(c.doc), 'data-ask': `${id} ${c.name}` }, spoken(c.name));
     if (takesNumber(c)) {
       const start = c.start ?? (c.min + c.max) / 2;
       const slider = el('input', {
@@ -104,7 +110,7 @@ export class InstructorPanel {
         max: String(c.max),
         step: String(stepOf(c)),
         value: String(start),
-        'aria-label': `${c.name} ${c.argument}`,
+        'aria-label': `${spoken(c.name)} ${spoken(c.argument)}`,
       });
       const shown = el('output', {}, label(start, c));
       slider.oninput = () => {
@@ -122,12 +128,12 @@ export class InstructorPanel {
       return el('div', { class: 'ask' }, go, slider, shown);
     }
     if (c.argument !== '') {
-      const text = el('input', { type: 'text', placeholder: spoken(c.argument), 'aria-label': c.argument });
+      const words = el('input', { type: 'text', placeholder: spoken(c.argument), 'aria-label': spoken(c.argument) });
       go.onclick = () => {
-        this.run(ask(id, c.name, text.value));
-        text.value = '';
+        this.run(ask(id, c.name, words.value));
+        words.value = '';
       };
-      return el('div', { class: 'ask' }, go, text);
+      return el('div', { class: 'ask' }, go, words);
     }
     go.classList.add('wide');
     go.onclick = () => {
@@ -147,5 +153,5 @@ export function label(value: number, c: Pick<CommandData, 'argument' | 'min' | '
   const at = c.argument.replace(/_per_([a-z]+)$/, '_/$1').match(/_(\/?[A-Za-z]+)$/);
   const unit = at?.[1] ?? '';
   const digits = Math.max(0, -Math.floor(Math.log10(stepOf(c))));
-  return `${value.toFixed(digits)}${unit ? ` ${unit}` : ''}`;
+  return quantity(fixed(value, digits), unit);
 }

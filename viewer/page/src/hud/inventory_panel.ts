@@ -2,12 +2,15 @@
 // The list of what is in a scene that is looked at: by name, with size and unit; a click highlights it.
 import type { InventoryItem } from '../inventory';
 import { el } from './dom';
+import { sentence } from '../bundle';
+import { said } from '../languages/said';
+import { text } from '../languages/text';
 
 /** "contact pair" -> "Contact pair". */
-const heading = (group: string): string => group.charAt(0).toUpperCase() + group.slice(1);
+const heading = (group: string): string => sentence(said(group));
 
 export class InventoryPanel {
-  readonly root = el('section', { class: 'panel inventory', 'aria-label': 'what is in the scene' });
+  readonly root = el('section', { class: 'panel inventory', 'aria-label': text('what is in the scene') });
   private chosen: HTMLButtonElement | null = null;
 
   constructor(private readonly choose: (item: InventoryItem | null) => void) {
@@ -39,7 +42,7 @@ export class InventoryPanel {
       'div',
       { class: 'values' },
       el('code', {}, `<${item.element}>  ${item.file}`),
-      ...item.values.map(([name, text]) => el('div', {}, el('span', {}, name), el('span', {}, text))),
+      ...item.values.map(([name, value]) => el('div', {}, el('span', {}, name), el('span', {}, value))),
     );
     details.hidden = true;
     const button = el('button', { 'aria-pressed': 'false' }, el('b', {}, item.name), el('small', {}, item.size));

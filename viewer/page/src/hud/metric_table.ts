@@ -2,12 +2,14 @@
 // How the hands work, in numbers: a row for each metric, a column for each hand. It opens and closes as a whole.
 import { el, setText } from './dom';
 import type { MetricView } from './metrics';
+import { fixed, quantity, withoutSign } from '../languages/numbers';
+import { text } from '../languages/text';
 
 /** A row: what it is, and its values. */
 export interface MetricRow {
   id: string;
   text: string;
-  /** 'less', 'more' or '': which is better. */
+  /** "less", "more" or '': which is better, in the reader's language. */
   better: string;
   /** Of the left and the right hand, or one of both together. */
   values: string[];
@@ -15,8 +17,7 @@ export interface MetricRow {
 
 export function metricText(m: Pick<MetricView, 'value' | 'digits' | 'unit'>): string {
   if (!Number.isFinite(m.value)) return '–';
-  const number = m.value.toFixed(m.digits).replace(/^-(0(\.0*)?)$/, '$1');
-  return m.unit === '' ? number : `${number} ${m.unit}`;
+  return quantity(withoutSign(fixed(m.value, m.digits)), m.unit);
 }
 
 /** Rows in the order of the metrics. What nobody did, and what is not known, has none. */
@@ -27,7 +28,7 @@ export function metricRows(metrics: readonly MetricView[]): MetricRow[] {
     const row = rows.get(m.id) ?? {
       id: m.id,
       text: m.text,
-      better: m.better === 'low' ? 'less' : m.better === 'high' ? 'more' : '',
+      better: m.better === 'low' ? text('less') : m.better === 'high' ? text('more') : '',
       values: m.hand === 'both' ? [''] : ['–', '–'],
     };
     row.values[m.hand === 'right' ? 1 : 0] = metricText(m);
@@ -43,7 +44,11 @@ export class MetricTable {
   private readonly rows = new Map<string, { row: HTMLElement; cells: HTMLElement[] }>();
 
   constructor(title: string) {
-    const head = el('tr', {}, ...['', 'Left', 'Right', 'Better'].map((text) => el('th', { scope: 'col' }, text)));
+    const head = el(
+      'tr',
+      {},
+      ...['', text('Left'), text('Right'), text('Better')].map((t) => el('th', { scope: 'col' }, t)),
+    );
     this.root = el(
       'details',
       { class: 'metrics' },
@@ -60,11 +65,11 @@ export class MetricTable {
   }
 
   private fill(metrics: readonly MetricView[]): void {
-    for (const { id, text, better, values } of metricRows(metrics)) {
+    for (const { id, text: name, better, values } of metricRows(metrics)) {
       let shown = this.rows.get(id);
       if (!shown) {
         const cells = values.map(() => el('td', values.length === 1 ? { colspan: '2' } : {}));
-        const row = el('tr', { 'data-metric': id }, el('th', { scope: 'row' }, text), ...cells, el('td', {}, better));
+        const row = el('tr', { 'data-metric': id }, el('th', { scope: 'row' }, name), ...cells, el('td', {}, better));
         shown = { row, cells };
         this.rows.set(id, shown);
         this.body.append(row);

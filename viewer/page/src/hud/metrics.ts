@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the engine measures of the hands (metrics_t), read with care: it is text from outside.
 import { finite, type Json, list, text } from './state';
+import { said } from '../languages/said';
 
 export interface MetricView {
   id: string;
@@ -24,7 +25,7 @@ const sides = ['left', 'right', 'both'] as const;
 function metric(m: Json): MetricView {
   return {
     id: text(m.id),
-    text: text(m.text ?? m.id),
+    text: said(text(m.text ?? m.id)),
     hand: sides.find((s) => s === m.hand) ?? 'both',
     value: finite(m.value) ?? NaN,
     unit: text(m.unit),

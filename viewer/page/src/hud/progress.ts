@@ -3,13 +3,15 @@
 import { el, setText } from './dom';
 import type { MeasureView, TimerView } from './state';
 import { timeLeftText, urgency, usedShare } from './timers';
+import { fixed, quantity } from '../languages/numbers';
+import { text } from '../languages/text';
 
 /** A few digits, no noise: 3.2, 12, 0.05. */
 export function valueText(value: number, unit: string): string {
   if (!Number.isFinite(value)) return '–';
   const a = Math.abs(value);
   const digits = unit === '' && Number.isInteger(value) ? 0 : a >= 10 ? 0 : a >= 1 ? 1 : 2;
-  return `${value.toFixed(digits)}${unit ? ` ${unit}` : ''}`;
+  return quantity(fixed(value, digits), unit);
 }
 
 export class Progress {
@@ -61,7 +63,7 @@ export class Progress {
         this.root.append(w.row);
       }
       setText(w.value, `${m.good > 0 ? '✓ ' : m.good < 0 ? '✗ ' : ''}${valueText(m.value, m.unit)}`);
-      w.row.title = m.limit ? `good is ${m.limit}` : '';
+      w.row.title = m.limit ? text('good is {limit}', { limit: m.limit }) : '';
       w.row.dataset.good = String(m.good);
       w.row.hidden = !Number.isFinite(m.value);
     }

@@ -8,22 +8,31 @@ import { el } from './dom';
 import type { Metrics } from './metrics';
 import type { HudState } from './state';
 import { summaryOf } from './summary';
+import { text } from '../languages/text';
 
 /** Names of the modes as a trainee reads them. */
 export const modeTitles: Record<string, string> = {
-  demonstration: 'Demonstration',
-  practice: 'Practice',
-  test: 'Test',
+  demonstration: text('Demonstration'),
+  practice: text('Practice'),
+  test: text('Test'),
 };
 
 const choices: { mode: string; text: string; detail: string }[] = [
-  { mode: 'demonstration', text: 'Watch', detail: 'The simulator shows the exercise. Its result is not yours.' },
-  { mode: 'practice', text: 'Try', detail: 'Practise with targets for your hands. The report says practice.' },
-  { mode: 'test', text: 'Be tested', detail: 'No targets and no help. The report says test.' },
+  {
+    mode: 'demonstration',
+    text: text('Watch'),
+    detail: text('The simulator shows the exercise. Its result is not yours.'),
+  },
+  {
+    mode: 'practice',
+    text: text('Try'),
+    detail: text('Practise with targets for your hands. The report says practice.'),
+  },
+  { mode: 'test', text: text('Be tested'), detail: text('No targets and no help. The report says test.') },
 ];
 
 /** Leads to the start page: other exercises, and how one gets on. */
-const allExercises = () => el('a', { href: 'start.html' }, 'All exercises');
+const allExercises = () => el('a', { href: 'start.html' }, text('All exercises'));
 
 export class SessionPanel {
   private readonly start: Dialog;
@@ -85,17 +94,19 @@ export class SessionPanel {
   /** Asks before what was done is left behind. */
   askReset(): void {
     this.question.show(
-      'Start again?',
+      text('Start again?'),
       [
         el(
           'p',
           {},
-          'Both hands go home and the exercise starts again. What was reached until now goes into its own report.',
+          text(
+            'Both hands go home and the exercise starts again. What was reached until now goes into its own report.',
+          ),
         ),
       ],
       [
-        { name: 'reset', text: 'Start again', run: () => this.run({ command: 'reset', argument: '' }) },
-        { name: 'stay', text: 'Go on', run: () => undefined },
+        { name: 'reset', text: text('Start again'), run: () => this.run({ command: 'reset', argument: '' }) },
+        { name: 'stay', text: text('Go on'), run: () => undefined },
       ],
       () => undefined,
     );
@@ -103,10 +114,10 @@ export class SessionPanel {
 
   private answers(): { name: string; text: string; detail: string; enabled: boolean; run(): void }[] {
     const motions = this.bundle?.exercise?.motions ?? [];
-    return choices.map(({ mode, text, detail }) => ({
+    return choices.map(({ mode, text: answer, detail }) => ({
       name: mode,
-      text,
-      detail: mode === 'demonstration' && motions.length === 0 ? 'This scene has no demonstration.' : detail,
+      text: answer,
+      detail: mode === 'demonstration' && motions.length === 0 ? text('This scene has no demonstration.') : detail,
       enabled: mode !== 'demonstration' || motions.length > 0,
       run: () => this.begin(mode),
     }));
@@ -120,14 +131,14 @@ export class SessionPanel {
   private askStart(): void {
     const exercise = this.bundle?.exercise;
     const title = exercise?.title || this.bundle?.title || 'Insula';
-    const note = el('p', { class: 'quiet' }, 'For training only. Not for patient care.');
+    const note = el('p', { class: 'quiet' }, text('For training only. Not for patient care.'));
     if (this.role === 'observer') {
-      this.start.show(title, [el('p', {}, 'Waiting until the trainee or the instructor begins.')], []);
+      this.start.show(title, [el('p', {}, text('Waiting until the trainee or the instructor begins.'))], []);
       return;
     }
     // A scene that its author has saved again goes on being tried.
     if (this.tried) return this.begin('practice');
-    const recorded = el('a', { href: 'replay.html', target: '_blank', rel: 'noopener' }, 'Recorded sessions');
+    const recorded = el('a', { href: 'replay.html', target: '_blank', rel: 'noopener' }, text('Recorded sessions'));
     const links = el('p', { class: 'links' }, ...(this.role === 'trainee' ? [allExercises()] : []), recorded);
     this.start.show(title, [el('p', {}, exercise?.text ?? ''), note, links], this.answers());
   }
@@ -135,9 +146,9 @@ export class SessionPanel {
   private showEnd(state: HudState): void {
     const again = this.role === 'observer' ? [] : this.answers();
     this.end.show(
-      state.state === 'done' ? 'Exercise complete' : 'Exercise failed',
+      state.state === 'done' ? text('Exercise complete') : text('Exercise failed'),
       [...summaryOf(state, this.metrics.values), ...(this.role === 'trainee' ? [allExercises()] : [])],
-      [...again, { name: 'close', text: 'Look at the field', run: () => undefined }],
+      [...again, { name: 'close', text: text('Look at the field'), run: () => undefined }],
       () => undefined,
     );
   }

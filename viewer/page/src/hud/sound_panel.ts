@@ -3,6 +3,7 @@
 import type { SoundSettings } from '../sound/settings';
 import { groupNames, groups } from '../sound/table';
 import { el, setText } from './dom';
+import { text } from '../languages/text';
 
 export interface SoundActions {
   /** Changes what is heard. */
@@ -13,19 +14,19 @@ export interface SoundActions {
 const sameGestureMs = 600;
 
 export class SoundPanel {
-  readonly root = el('div', { class: 'controls sound', role: 'group', 'aria-label': 'sound' });
+  readonly root = el('div', { class: 'controls sound', role: 'group', 'aria-label': text('sound') });
   private readonly toggle = el('button');
   private readonly volume = el('input', {
     ...{ type: 'range', min: '0', max: '1', step: '0.05' },
-    ...{ title: 'volume', 'aria-label': 'volume of the sound' },
+    ...{ title: text('volume'), 'aria-label': text('volume of the sound') },
   });
   private readonly groups = groups.map((group) => ({
     group,
     button: el(
       'button',
       {
-        title: `sounds of ${groupNames[group].whole}`,
-        'aria-label': `sounds of ${groupNames[group].whole}`,
+        title: groupNames[group].whole,
+        'aria-label': groupNames[group].whole,
         'data-group': group,
       },
       groupNames[group].short,
@@ -40,7 +41,7 @@ export class SoundPanel {
     private readonly actions: SoundActions,
     key: string,
   ) {
-    this.toggle.title = `sound on or off${key === '' ? '' : ` (${key})`}`;
+    this.toggle.title = key === '' ? text('sound on or off') : text('sound on or off ({key})', { key });
     this.toggle.onclick = () => this.toggleSound();
     this.volume.oninput = () => actions.sound({ volume: Number(this.volume.value) });
     for (const { group, button } of this.groups)
@@ -63,7 +64,7 @@ export class SoundPanel {
     this.settings = settings;
     this.waits = waits;
     const { on } = settings;
-    setText(this.toggle, !on ? '♪ Sound off' : waits ? '♪ Sound: press a key' : '♪ Sound on');
+    setText(this.toggle, !on ? text('♪ Sound off') : waits ? text('♪ Sound: press a key') : text('♪ Sound on'));
     this.toggle.setAttribute('aria-pressed', String(on));
     this.volume.hidden = !on;
     if (Number(this.volume.value) !== settings.volume) this.volume.value = String(settings.volume);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the engine says of the exercise (hud_json of a frame), read with care: it is text from outside.
+import { fixed } from '../languages/numbers';
+import { said } from '../languages/said';
 
 export interface TimerView {
   id: string;
@@ -65,15 +67,15 @@ export function parseHud(json: string): HudState | null {
   }
   if (!isObject(j)) return null;
   return {
-    goals: list(j.goals).map((g) => ({ id: text(g.id), text: text(g.text ?? g.id), done: g.done === true })),
+    goals: list(j.goals).map((g) => ({ id: text(g.id), text: said(text(g.text ?? g.id)), done: g.done === true })),
     faults: list(j.faults).map((f) => ({
       id: text(f.id),
-      text: text(f.text ?? f.id),
+      text: said(text(f.text ?? f.id)),
       count: finite(f.count) ?? 0,
       timesS: Array.isArray(f.times_s) ? f.times_s.filter((t) => typeof t === 'number') : [],
-      advice: text(f.advice),
+      advice: said(text(f.advice)),
     })),
-    message: text(j.message),
+    message: said(text(j.message)),
     state: text(j.state),
     mode: text(j.mode),
     report: text(j.report),
@@ -82,28 +84,28 @@ export function parseHud(json: string): HudState | null {
     elapsedS: finite(j.elapsed_s),
     timers: list(j.timers).map((t) => ({
       id: text(t.id),
-      text: text(t.text ?? t.id),
+      text: said(text(t.text ?? t.id)),
       elapsedS: finite(t.elapsed_s) ?? 0,
       limitS: finite(t.limit_s) ?? 0,
       running: t.running === true,
     })),
     measures: list(j.measures).map((m) => ({
       id: text(m.id),
-      text: text(m.text ?? m.id),
+      text: said(text(m.text ?? m.id)),
       value: finite(m.value) ?? NaN,
       unit: text(m.unit),
       good: Math.sign(finite(m.good) ?? 0),
-      limit: text(m.limit),
+      limit: said(text(m.limit)),
     })),
     hands: list(j.hands).map((h) => ({ hand: text(h.hand), tool: text(h.tool) })),
   };
 }
 
-/** m:ss.s */
+/** m:ss.s, with the reader's decimal sign. */
 export function clockText(seconds: number): string {
   // Rounded first, so that 59.97 becomes 1:00.0 and not 0:60.0.
   const tenths = Math.round(Math.max(0, seconds) * 10);
-  return `${Math.floor(tenths / 600)}:${((tenths % 600) / 10).toFixed(1).padStart(4, '0')}`;
+  return `${Math.floor(tenths / 600)}:${fixed((tenths % 600) / 10, 1).padStart(4, '0')}`;
 }
 
 /**

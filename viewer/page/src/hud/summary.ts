@@ -5,8 +5,9 @@ import { el } from './dom';
 import { MetricTable } from './metric_table';
 import type { MetricView } from './metrics';
 import { valueText } from './progress';
-import type { FaultView, HudState, MeasureView } from './state';
+import type { FaultView, HudState, MeasureView, TimerView } from './state';
 import { clockText } from './state';
+import { text } from '../languages/text';
 
 const yes = '✓';
 const no = '✗';
@@ -15,11 +16,11 @@ const no = '✗';
 export function timesText(fault: Pick<FaultView, 'count' | 'timesS'>): string {
   const shown = fault.timesS.map(clockText).join(', ');
   const more = fault.count - fault.timesS.length;
-  return more > 0 && shown !== '' ? `${shown} and ${more} more` : shown;
+  return more > 0 && shown !== '' ? text('{times} and {more} more', { times: shown, more }) : shown;
 }
 
 export function verdict(m: Pick<MeasureView, 'good'>): string {
-  return m.good > 0 ? `${yes} good` : m.good < 0 ? `${no} not good` : '';
+  return m.good > 0 ? `${yes} ${text('good')}` : m.good < 0 ? `${no} ${text('not good')}` : '';
 }
 
 const part = (title: string, rows: HTMLElement[]): HTMLElement[] =>
@@ -27,11 +28,19 @@ const part = (title: string, rows: HTMLElement[]): HTMLElement[] =>
 
 function whose(mode: string): HTMLElement[] {
   const texts: Record<string, string> = {
-    demonstration: 'This was a demonstration. Its result is not yours.',
-    practice: 'This was practice, with targets.',
-    test: 'This was a test, without help.',
+    demonstration: text('This was a demonstration. Its result is not yours.'),
+    practice: text('This was practice, with targets.'),
+    test: text('This was a test, without help.'),
   };
   return texts[mode] ? [el('p', { class: 'whose', 'data-mode': mode }, texts[mode])] : [];
+}
+
+const ofLimit = (t: Pick<TimerView, 'elapsedS' | 'limitS'>): string =>
+  text('{time} of {limit}', { time: clockText(t.elapsedS), limit: clockText(t.limitS) });
+
+function timesMade(count: number, times: string): string {
+  if (times === '') return text('{count, plural, one {# time} other {# times}}', { count });
+  return text('{count, plural, one {# time} other {# times}}, at {times}', { count, times });
 }
 
 function faultRow(f: FaultView): HTMLElement {
@@ -40,13 +49,13 @@ function faultRow(f: FaultView): HTMLElement {
     'li',
     { 'data-good': '-1' },
     el('b', {}, `${no} ${f.text}`),
-    el('span', {}, ` ${f.count} time${f.count === 1 ? '' : 's'}${times ? `, at ${times}` : ''}`),
+    el('span', {}, ` ${timesMade(f.count, times)}`),
     ...(f.advice ? [el('p', { class: 'advice' }, f.advice)] : []),
   );
 }
 
 function measureRow(m: MeasureView): HTMLElement {
-  const limit = m.limit ? `; good is ${m.limit}` : '';
+  const limit = m.limit ? `; ${text('good is {limit}', { limit: m.limit })}` : '';
   return el(
     'li',
     { 'data-good': String(m.good) },
@@ -57,7 +66,7 @@ function measureRow(m: MeasureView): HTMLElement {
 }
 
 function hands(metrics: readonly MetricView[]): HTMLElement {
-  const table = new MetricTable('How your hands worked');
+  const table = new MetricTable(text('How your hands worked'));
   table.show(metrics);
   return table.root;
 }
@@ -66,8 +75,11 @@ function hands(metrics: readonly MetricView[]): HTMLElement {
 function again(recording: string): HTMLElement[] {
   const name = recording.replace(/^.*[\\/]/, '').replace(/\.insula$/, '');
   const session = `replay.html?session=${encodeURIComponent(name)}`;
-  const link = (href: string, text: string) => el('a', { href, target: '_blank', rel: 'noopener' }, text);
-  return [link(`${session}&debrief`, 'Debrief to read and print'), link(session, 'Watch this session again')];
+  const link = (href: string, words: string) => el('a', { href, target: '_blank', rel: 'noopener' }, words);
+  return [
+    link(`${session}&debrief`, text('Debrief to read and print')),
+    link(session, text('Watch this session again')),
+  ];
 }
 
 export function summaryOf(s: HudState, metrics: readonly MetricView[]): HTMLElement[] {
@@ -76,27 +88,34 @@ export function summaryOf(s: HudState, metrics: readonly MetricView[]): HTMLElem
   return [
     ...whose(s.mode),
     ...(s.message && s.state === 'failed' ? [el('p', { class: 'bad' }, s.message)] : []),
-    el('p', {}, s.elapsedS === null ? '' : `Time: ${clockText(s.elapsedS)}`),
+    el('p', {}, s.elapsedS === null ? '' : text('Time: {time}', { time: clockText(s.elapsedS) })),
     ...part(
-      'Goals',
+      text('Goals'),
       s.goals.map((g) =>
-        el('li', { 'data-good': g.done ? '1' : '-1' }, `${g.done ? `${yes} reached` : `${no} not reached`}: ${g.text}`),
+        el(
+          'li',
+          { 'data-good': g.done ? '1' : '-1' },
+          `${g.done ? `${yes} ${text('reached')}` : `${no} ${text('not reached')}`}: ${g.text}`,
+        ),
       ),
     ),
-    ...part('Faults', made.length > 0 ? made.map(faultRow) : [el('li', { 'data-good': '1' }, `${yes} none`)]),
-    ...part('Measures', s.measures.filter((m) => Number.isFinite(m.value)).map(measureRow)),
     ...part(
-      'Clocks',
+      text('Faults'),
+      made.length > 0 ? made.map(faultRow) : [el('li', { 'data-good': '1' }, `${yes} ${text('none')}`)],
+    ),
+    ...part(text('Measures'), s.measures.filter((m) => Number.isFinite(m.value)).map(measureRow)),
+    ...part(
+      text('Clocks'),
       clocks.map((t) =>
         el(
           'li',
           { 'data-good': t.elapsedS <= t.limitS ? '1' : '-1' },
-          `${t.elapsedS <= t.limitS ? yes : no} ${t.text}: ${clockText(t.elapsedS)} of ${clockText(t.limitS)}`,
+          `${t.elapsedS <= t.limitS ? yes : no} ${t.text}: ${ofLimit(t)}`,
         ),
       ),
     ),
     ...(metrics.length > 0 ? [hands(metrics)] : []),
     ...(s.recording ? again(s.recording).map((link) => el('p', {}, link)) : []),
-    ...(s.report ? [el('p', { class: 'where' }, 'Report: ', el('code', {}, s.report))] : []),
+    ...(s.report ? [el('p', { class: 'where' }, text('Report:'), ' ', el('code', {}, s.report))] : []),
   ];
 }

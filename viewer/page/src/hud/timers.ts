@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Countdowns: time left, and how much it presses.
 import type { TimerView } from './state';
+import { text } from '../languages/text';
 
 export type Urgency = 'calm' | 'soon' | 'over';
 
@@ -26,7 +27,7 @@ export function usedShare(t: Pick<TimerView, 'elapsedS' | 'limitS'>): number {
 /** What a headset shows below the field: the note, running clocks, and what was said last. */
 export function headsetLines(timers: readonly TimerView[], said: string): string[] {
   const running = timers.filter((t) => t.running).map((t) => `${t.text} ${timeLeftText(t)}`);
-  return ['For training only. Not for patient care.', running.join('     '), said];
+  return [text('For training only. Not for patient care.'), running.join('     '), said];
 }
 
 const minutes = (seconds: number): string => `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;

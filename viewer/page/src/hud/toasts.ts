@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What must be noticed: refusals in passing, and the instructor's words and advice, which stay until they are read.
 import { el } from './dom';
+import { text } from '../languages/text';
 
 const refusalMs = 4500;
 
@@ -13,18 +14,18 @@ export class Toasts {
   }
 
   /** read: called when the trainee has said that it was understood. */
-  instruct(text: string, read: () => void): void {
-    this.stay('instruction', 'Instructor', text, read);
+  instruct(words: string, read: () => void): void {
+    this.stay('instruction', text('Instructor'), words, read);
   }
 
   /** About this machine; once. */
-  advise(text: string): void {
-    this.stay('advice', 'Advice', text, () => undefined);
+  advise(words: string): void {
+    this.stay('advice', text('Advice'), words, () => undefined);
   }
 
-  private stay(kind: string, who: string, text: string, read: () => void): void {
-    const close = el('button', { 'aria-label': 'understood' }, '✓ Read');
-    const line = el('div', { class: `toast ${kind}` }, el('b', {}, who), el('span', {}, text), close);
+  private stay(kind: string, who: string, words: string, read: () => void): void {
+    const close = el('button', { 'aria-label': text('understood') }, text('✓ Read'));
+    const line = el('div', { class: `toast ${kind}` }, el('b', {}, who), el('span', {}, words), close);
     close.onclick = () => {
       line.remove();
       read();

@@ -7,6 +7,8 @@ import type { Bundle, ToolData } from '../bundle_types';
 import type { RenderFrame } from '../lcm';
 import { ask, type ToolCommand, toolCommands, type UserCommand } from './commands';
 import { el, setText } from './dom';
+import { said } from '../languages/said';
+import { text } from '../languages/text';
 
 interface Entry {
   tool: ToolData;
@@ -16,7 +18,10 @@ interface Entry {
 
 /** "permanent · 7 mm · 1.5 N". */
 export const toolFacts = (tool: ToolData): string =>
-  [...tool.tags, ...tool.properties.map((p) => p.text)].filter((x) => x !== '').join(' · ');
+  [...tool.tags, ...tool.properties.map((p) => p.text)]
+    .filter((x) => x !== '')
+    .map(said)
+    .join(' · ');
 
 type ToolState = Pick<RenderFrame['tool'][number], 'state' | 'hand'>;
 
@@ -26,6 +31,12 @@ export function toolBadge(tool: ToolState | undefined, hand: number): { text: st
   if (tool.state === toolState.inField) return { text: 'in the field', free: false };
   return { text: tool.hand === hand ? 'loaded' : 'taken', free: false };
 }
+
+const badgeTexts: Record<string, string> = {
+  'in the field': text('in the field'),
+  loaded: text('loaded'),
+  taken: text('taken'),
+};
 
 export class ToolList {
   readonly root = el('div', { class: 'tool-list' });
@@ -61,8 +72,8 @@ export class ToolList {
     this.root.hidden = this.entries.length === 0;
     if (this.offer) {
       const { holder, command } = this.offer;
-      this.head.title = `${command.doc || spoken(command.name)}: ${holder.title} (L)`;
-      this.list.setAttribute('aria-label', holder.title);
+      this.head.title = `${said(command.doc) || spoken(command.name)}: ${said(holder.title)} (L)`;
+      this.list.setAttribute('aria-label', said(holder.title));
     }
     this.shown = '?';
     this.close();
@@ -84,7 +95,7 @@ export class ToolList {
     this.shown = key;
     this.entries.forEach(({ button, badge }, k) => {
       const state = states[k]!;
-      setText(badge, state.text);
+      setText(badge, badgeTexts[state.text] ?? '');
       badge.dataset.state = state.text;
       button.disabled = !this.mayDrive || !state.free;
       button.setAttribute('aria-selected', String(state.text === 'loaded'));
@@ -109,7 +120,7 @@ export class ToolList {
       'button',
       { role: 'option', 'data-choice': tool.id },
       tool.picture ? el('img', { src: tool.picture, alt: '' }) : el('span', { class: 'no-picture' }),
-      el('span', { class: 'what' }, el('b', {}, tool.title), el('small', {}, toolFacts(tool))),
+      el('span', { class: 'what' }, el('b', {}, said(tool.title)), el('small', {}, toolFacts(tool))),
       badge,
     );
     button.onclick = () => {
@@ -120,10 +131,16 @@ export class ToolList {
   }
 
   private showHead(loaded: ToolData | null): void {
-    const title = loaded?.title ?? `No ${spoken(this.offer?.tools[0]?.kind ?? 'tool')} loaded`;
+    const kind = spoken(this.offer?.tools[0]?.kind ?? 'tool');
+    const title = loaded ? said(loaded.title) : text('No {kind} loaded', { kind });
     this.head.replaceChildren(
       ...(loaded?.picture ? [el('img', { src: loaded.picture, alt: '' })] : []),
-      el('span', { class: 'what' }, el('b', {}, title), el('small', {}, loaded ? toolFacts(loaded) : 'choose one')),
+      el(
+        'span',
+        { class: 'what' },
+        el('b', {}, title),
+        el('small', {}, loaded ? toolFacts(loaded) : text('choose one')),
+      ),
       el('span', { class: 'arrow' }, '▾'),
     );
   }

@@ -4,6 +4,8 @@ import type { HandData, ToolData } from '../bundle_types';
 import { el } from './dom';
 import { exchange, type UserCommand } from './commands';
 import { ToolHistory } from './tool_history';
+import { said } from '../languages/said';
+import { text } from '../languages/text';
 
 export class Tray {
   readonly root = el('div', { class: 'tray', role: 'group' });
@@ -19,11 +21,14 @@ export class Tray {
   showScene(hand: HandData | null): void {
     this.hand = hand;
     this.forget();
-    this.root.setAttribute('aria-label', `tools of the ${hand?.hand ?? ''} hand`);
+    this.root.setAttribute(
+      'aria-label',
+      hand?.hand === 'left' ? text('tools of the left hand') : text('tools of the right hand'),
+    );
     this.buttons = (hand && hand.tools.length > 1 ? hand.tools : []).map((tool) => {
       const button = el(
         'button',
-        { title: tool.title, 'data-tool': tool.id },
+        { title: said(tool.title), 'data-tool': tool.id },
         ...(tool.picture ? [el('img', { src: tool.picture, alt: '' })] : []),
         el('span', {}, short(tool, hand!.hand)),
       );
@@ -74,7 +79,7 @@ export class Tray {
 /** The hand need not be said again in its own list. */
 export function short(tool: ToolData, hand: string): string {
   const name = tool.title.startsWith(`${hand} `) ? tool.title.slice(hand.length + 1) : tool.title;
-  return name || tool.kind;
+  return said(name || tool.kind.replace(/_/g, ' '));
 }
 
 export function toolLabel(tool: ToolData | undefined, hand: number): string {

@@ -7,6 +7,10 @@ import { levels } from '../quality';
 import { angleRangeDeg, stereoModes, type StereoMode } from '../stereo';
 import { ask, type UserCommand } from './commands';
 import { el, setText } from './dom';
+import { languageSelect } from '../languages/language_select';
+import { said } from '../languages/said';
+import { text } from '../languages/text';
+import type { QualityName } from '../options';
 
 export interface ViewActions {
   quality(name: string): void;
@@ -19,42 +23,54 @@ export interface ViewActions {
 }
 
 const stereoNames: Record<StereoMode, string> = {
-  off: 'One eye',
-  sbs: 'Side by side',
-  anaglyph: 'Red-cyan',
-  xr: 'Headset',
+  off: text('One eye'),
+  sbs: text('Side by side'),
+  anaglyph: text('Red-cyan'),
+  xr: text('Headset'),
 };
 
-const rulerNames: Record<RulerMode, string> = { off: 'Ruler', tool: 'Ruler: along the tool', sight: 'Ruler: in depth' };
+const levelNames: Record<QualityName, string> = {
+  draft: text('Draft'),
+  low: text('Low'),
+  medium: text('Medium'),
+  high: text('High'),
+  ultra: text('Ultra'),
+};
+
+const rulerNames: Record<RulerMode, string> = {
+  off: text('Ruler'),
+  tool: text('Ruler: along the tool'),
+  sight: text('Ruler: in depth'),
+};
 
 export class ViewMenu {
   readonly root = el('div', { class: 'controls view' });
-  readonly quality = el('select', { title: 'picture quality', 'aria-label': 'picture quality' });
-  private readonly stereo = el('select', { title: 'stereo (O)', 'aria-label': 'stereo' });
+  readonly quality = el('select', { title: text('picture quality'), 'aria-label': text('picture quality') });
+  private readonly stereo = el('select', { title: text('stereo (O)'), 'aria-label': text('stereo') });
   private readonly angle = el('input', {
     type: 'range',
     min: String(angleRangeDeg[0]),
     max: String(angleRangeDeg[1]),
     step: '0.25',
-    title: 'angle between the eyes at the focus ([ and ])',
-    'aria-label': 'stereo angle',
+    title: text('angle between the eyes at the focus ([ and ])'),
+    'aria-label': text('stereo angle'),
   });
   private readonly infrared = el(
     'button',
-    { title: 'infrared picture: what fluoresces (I)', 'aria-pressed': 'false' },
-    'Infrared',
+    { title: text('infrared picture: what fluoresces (I)'), 'aria-pressed': 'false' },
+    text('Infrared'),
   );
   private readonly ruler = el('button', {
-    title: 'scale from the tip to the tissue: along the tool, along the line of sight, off (K)',
+    title: text('scale from the tip to the tissue: along the tool, along the line of sight, off (K)'),
     'data-ruler': 'off',
   });
   private readonly glow = el('span', { class: 'glow' });
-  private readonly enter = el('button', { title: 'show the picture in the headset' }, 'Enter headset');
+  private readonly enter = el('button', { title: text('show the picture in the headset') }, text('Enter headset'));
 
   constructor(private readonly actions: ViewActions) {
     this.quality.append(
-      el('option', { value: '' }, 'Auto'),
-      ...levels.map((l) => el('option', { value: l.name }, l.name[0]!.toUpperCase() + l.name.slice(1))),
+      el('option', { value: '' }, text('Auto')),
+      ...levels.map((l) => el('option', { value: l.name }, levelNames[l.name])),
     );
     this.quality.onchange = () => {
       actions.quality(this.quality.value);
@@ -71,7 +87,16 @@ export class ViewMenu {
       actions.stereo('xr');
     };
     this.ruler.onclick = () => actions.nextRuler();
-    this.root.append(this.quality, this.stereo, this.angle, this.enter, this.ruler, this.infrared, this.glow);
+    this.root.append(
+      this.quality,
+      this.stereo,
+      this.angle,
+      this.enter,
+      this.ruler,
+      this.infrared,
+      this.glow,
+      languageSelect(),
+    );
     this.showStereo('off', 5, false, false);
     this.showRuler('off');
     this.showGlow(false, []);
@@ -89,7 +114,7 @@ export class ViewMenu {
     this.angle.hidden = mode === 'off';
     const xr = this.stereo.querySelector<HTMLOptionElement>('option[value=xr]')!;
     xr.disabled = !headset;
-    xr.textContent = headset ? stereoNames.xr : 'Headset (none found)';
+    xr.textContent = headset ? stereoNames.xr : text('Headset (none found)');
     this.enter.hidden = mode !== 'xr' || presenting;
     this.enter.disabled = !headset;
   }
@@ -105,7 +130,7 @@ export class ViewMenu {
       ...commands.map(({ id, command }, k) => {
         const button = el(
           'button',
-          { title: `${command.doc}${k === 0 ? ' (J)' : ''}`, 'data-glow': command.name },
+          { title: `${said(command.doc)}${k === 0 ? ' (J)' : ''}`, 'data-glow': command.name },
           sentence(spoken(command.name)),
         );
         button.onclick = () => {

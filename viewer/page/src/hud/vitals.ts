@@ -16,6 +16,8 @@ import {
 } from '../step_data/channels';
 import type { ChannelData } from '../step_data/declarations';
 import { el, setText } from './dom';
+import { said } from '../languages/said';
+import { text } from '../languages/text';
 
 interface Cell {
   channel: ChannelData;
@@ -47,7 +49,7 @@ export function tableOf(channels: readonly ChannelData[]): {
 
 export class Vitals {
   readonly root = el('section', { class: 'panel vitals' });
-  private readonly beat = el('span', { class: 'beat', title: 'heartbeat' }, '♥');
+  private readonly beat = el('span', { class: 'beat', title: text('heartbeat') }, '♥');
   private readonly rate = el('span', { class: 'rate' });
   /** Numbers of the component that beats. */
   private readonly beside = el('span', { class: 'beside' });
@@ -98,7 +100,7 @@ export class Vitals {
     const n = this.beats.length;
     // At a few pictures a second beats are missed: then no number is better than a wrong one.
     const rate = n > 2 ? (60 * (n - 1)) / Math.max(0.1, this.beats[n - 1]! - this.beats[0]!) : 0;
-    setText(this.rate, rate > 30 && rate < 220 ? `${Math.round(rate)} /min` : '');
+    setText(this.rate, rate > 30 && rate < 220 ? text('{rate} /min', { rate: Math.round(rate) }) : '');
   }
 
   private makeComponent(
@@ -114,7 +116,7 @@ export class Vitals {
       parts.push(el('div', { class: 'lines' }, ...heading, ...lines.map((c) => makeLine(c, cells))));
     if (rows.length > 0) {
       const unitOf = (k: number) => rows.map((r) => r.cells[k]).find((c) => c)?.display.unit ?? '';
-      const names = columns.map((name, k) => el('td', {}, el('b', {}, name), unitOf(k)));
+      const names = columns.map((name, k) => el('td', {}, el('b', {}, said(name)), unitOf(k)));
       const corner = el('th', {}, ...(lines.length > 0 ? [] : heading));
       const body = rows.map((r) => makeRow(r.group, r.cells, cells));
       parts.push(el('table', {}, el('tr', { class: 'units' }, corner, ...names), ...body));
@@ -128,7 +130,7 @@ function makeRow(group: string, channels: readonly (ChannelData | null)[], cells
   for (const channel of channels) {
     const text = el('span');
     const bar = channel && isShare(channel) ? el('i') : null;
-    const place = el('td', channel ? { title: channel.doc, 'data-channel': channel.id } : {});
+    const place = el('td', channel ? { title: said(channel.doc), 'data-channel': channel.id } : {});
     place.append(...(bar ? [el('span', { class: 'line' }, bar)] : []), text);
     row.append(place);
     if (channel) cells.push({ channel, text, bar, row: place, write: numberText, mayHide: false });
@@ -141,8 +143,8 @@ function makeLine(channel: ChannelData, cells: Cell[]): HTMLElement {
   const bar = isShare(channel) ? el('i') : null;
   const row = el(
     'div',
-    { class: 'vital', 'data-channel': channel.id, title: channel.doc },
-    el('span', {}, shortName(channel)),
+    { class: 'vital', 'data-channel': channel.id, title: said(channel.doc) },
+    el('span', {}, said(shortName(channel))),
     text,
   );
   if (bar) row.append(el('span', { class: 'line' }, bar));

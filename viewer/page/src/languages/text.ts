@@ -19,6 +19,7 @@ export function setLanguage(languageTag: string, translations: Catalogue): void 
   tag = languageTag;
   catalogue = translations;
   formats.clear();
+  if (typeof document !== 'undefined') document.documentElement.lang = languageTag;
 }
 
 /** The BCP 47 tag of the language, for Intl.NumberFormat and for the lang attribute. */
@@ -26,11 +27,18 @@ export function languageTag(): string {
   return tag;
 }
 
+/** Whether the catalogue has a translation of a message. */
+export function hasTranslation(english: string): boolean {
+  return Object.hasOwn(catalogue, english);
+}
+
 /** The English message in the language of the page, with its arguments filled in. */
 export function text(english: string, values: TextValues = {}): string {
   let format = formats.get(english);
   if (!format) {
-    format = new IntlMessageFormat(catalogue[english] ?? english, tag, undefined, { ignoreTag: true });
+    format = new IntlMessageFormat(hasTranslation(english) ? catalogue[english] : english, tag, undefined, {
+      ignoreTag: true,
+    });
     formats.set(english, format);
   }
   return String(format.format(values));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bytes that are read where they lie, a part at a time. A recording of hours need not fit into memory.
+import { text } from '../languages/text';
 
 export interface ByteSource {
   readonly size: number;
@@ -8,7 +9,10 @@ export interface ByteSource {
 }
 
 function checkRange(size: number, at: number, length: number): void {
-  if (at < 0 || length < 0 || at + length > size) throw new RangeError(`no bytes ${at} to ${at + length} of ${size}`);
+  if (at < 0 || length < 0 || at + length > size)
+    throw new RangeError(
+      text('no bytes {from} to {to} of {size}', { from: String(at), to: String(at + length), size: String(size) }),
+    );
 }
 
 /** A file that a person has chosen. */
@@ -77,7 +81,7 @@ export class RemoteSource implements ByteSource {
     const first = await fetch(url, { headers: { range: 'bytes=0-0' }, cache: 'no-store' });
     if (first.status !== noSuchBytes) await answered(Promise.resolve(first));
     const size = /\/(\d+)$/.exec(first.headers.get('content-range') ?? '')?.[1];
-    if (size === undefined) throw new Error('the server gives no parts of a file');
+    if (size === undefined) throw new Error(text('the server gives no parts of a file'));
     return new RemoteSource(url, Number(size));
   }
 
@@ -99,9 +103,10 @@ export class RemoteSource implements ByteSource {
     if (length === 0) return new Uint8Array(0);
     const headers = { range: `bytes=${at}-${at + length - 1}` };
     const response = await answered(fetch(this.url, { headers, cache: 'no-store' }));
-    if (response.status !== 206) throw new Error('the server gives no parts of a file');
+    if (response.status !== 206) throw new Error(text('the server gives no parts of a file'));
     const bytes = new Uint8Array(await response.arrayBuffer());
-    if (bytes.length === 0 || bytes.length > length) throw new Error(`the server gave ${bytes.length} bytes`);
+    if (bytes.length === 0 || bytes.length > length)
+      throw new Error(text('the server gave {count} bytes', { count: bytes.length }));
     return bytes;
   }
 }

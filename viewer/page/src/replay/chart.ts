@@ -6,6 +6,8 @@ import { niceRange } from '../hud/curves';
 import { clockText } from '../hud/state';
 import type { ReplayClock } from './clock';
 import type { Series } from './timeline';
+import { significant } from '../languages/numbers';
+import { text } from '../languages/text';
 
 const colours = ['#7cc4ff', '#f0b64a', '#c79bff'];
 const markColours: Record<string, string> = { fault: '#f2604f', goal: '#5fcf92', note: '#e9edf0' };
@@ -62,7 +64,7 @@ export class TimelineChart {
     this.canvas = el('canvas', {});
     this.root = el(
       'div',
-      { class: 'timeline', role: 'slider', tabindex: '0', 'aria-label': 'time', 'aria-valuemin': '0' },
+      { class: 'timeline', role: 'slider', tabindex: '0', 'aria-label': text('time'), 'aria-valuemin': '0' },
       this.canvas,
       this.cursor,
       this.hint,
@@ -166,7 +168,7 @@ function drawLane(
   });
   c.font = `${textPx}px sans-serif`;
   c.fillStyle = '#9aa4ad';
-  const scale = `${Number(high.toPrecision(3))} ${curves[0]?.unit ?? ''}  `;
+  const scale = `${significant(high, 3)} ${curves[0]?.unit ?? ''}  `;
   c.fillText(scale, 2, top + textPx - 2);
   let x = 2 + c.measureText(scale).width;
   curves.forEach((series, k) => {

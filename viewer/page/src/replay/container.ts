@@ -5,6 +5,8 @@ import { decompress } from 'fzstd';
 import { BlockSource, type ByteSource } from './byte_source';
 import { type Chunk, type ContainerIndex, indexOf } from './container_index';
 import { Bytes, ContainerError, crc32, messageHead, mostChunkBytes, op, recordsOf } from './mcap_records';
+import { fixed } from '../languages/numbers';
+import { text } from '../languages/text';
 
 /** Chunks that lie so close are read together, up to so many bytes. */
 const gapBytes = 256 << 10;
@@ -66,7 +68,7 @@ export class Container {
   /** Throws ContainerError if there is none of that name, or it is damaged. */
   async attachment(name: string): Promise<Uint8Array> {
     const place = this.index.attachments.get(name);
-    if (!place) throw new ContainerError(`${name} is missing in the recording`);
+    if (!place) throw new ContainerError(text('{name} is missing in the recording', { name }));
     const r = new Bytes(await this.source.read(place.at, place.length));
     r.take(16);
     r.text();
@@ -124,8 +126,8 @@ export class Container {
     try {
       return contentOf(record);
     } catch (e) {
-      const why = e instanceof ContainerError ? e.message : 'is damaged';
-      this.note(`${chunk.firstS.toFixed(1)} s to ${chunk.lastS.toFixed(1)} s ${why}`);
+      const why = e instanceof ContainerError ? e.message : text('is damaged');
+      this.note(text('{from} s to {to} s {why}', { from: fixed(chunk.firstS, 1), to: fixed(chunk.lastS, 1), why }));
       return new Uint8Array(0);
     }
   }
@@ -141,14 +143,14 @@ function contentOf(record: Uint8Array): Uint8Array {
   const r = new Bytes(record);
   r.take(16);
   const size = r.u64();
-  if (size > mostChunkBytes) throw new ContainerError('is larger than any chunk');
+  if (size > mostChunkBytes) throw new ContainerError(text('is larger than any chunk'));
   const crc = r.u32();
   const compression = r.text();
   const packed = r.take(r.u64());
   if (compression !== 'zstd' && compression !== '')
-    throw new ContainerError(`is compressed by ${compression}, which this page cannot read`);
+    throw new ContainerError(text('is compressed by {compression}, which this page cannot read', { compression }));
   const bytes = compression === '' ? packed : decompress(packed, new Uint8Array(size));
-  if (bytes.length !== size || crc32(bytes) !== crc) throw new ContainerError('is damaged');
+  if (bytes.length !== size || crc32(bytes) !== crc) throw new ContainerError(text('is damaged'));
   return bytes;
 }
 

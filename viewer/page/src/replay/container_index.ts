@@ -13,6 +13,7 @@ import {
   recordHead,
   recordsOf,
 } from './mcap_records';
+import { text } from '../languages/text';
 
 /** Bytes of the file: a whole record without its head. */
 export interface Place {
@@ -60,7 +61,7 @@ const newIndex = (): ContainerIndex => ({
 /** Throws ContainerError when it is no MCAP file. */
 export async function indexOf(source: ByteSource): Promise<ContainerIndex> {
   const begin = await source.read(0, Math.min(source.size, magic.length));
-  if (magic.some((b, k) => begin[k] !== b)) throw new ContainerError('this is no recorded session');
+  if (magic.some((b, k) => begin[k] !== b)) throw new ContainerError(text('this is no recorded session'));
   return (await fromSummary(source)) ?? (await fromRecords(source));
 }
 
@@ -163,14 +164,14 @@ async function fromRecords(source: ByteSource): Promise<ContainerIndex> {
     }
     const place = { at: at + recordHead, length };
     if (kind === 0 || length > source.size - place.at) {
-      index.damage.push('the file is cut off or damaged; what is before can be seen');
+      index.damage.push(text('the file is cut off or damaged; what is before can be seen'));
       return index;
     }
     try {
       await addRecord(index, kind, place, window);
     } catch (e) {
       if (!(e instanceof ContainerError)) throw e;
-      index.damage.push(`the record at byte ${at} ${e.message}`);
+      index.damage.push(text('the record at byte {at}: {why}', { at: String(at), why: e.message }));
     }
     at = place.at + length;
   }
@@ -189,7 +190,7 @@ async function addRecord(index: ContainerIndex, kind: number, place: Place, wind
   } else if (kind === op.chunk) {
     const r = await content(chunkHeadBytes);
     const times = { firstS: r.u64() * 1e-9, lastS: r.u64() * 1e-9 };
-    if (r.u64() > mostChunkBytes) throw new ContainerError('is larger than any chunk');
+    if (r.u64() > mostChunkBytes) throw new ContainerError(text('is larger than any chunk'));
     index.chunks.push({ ...times, ...place, channels: null });
   } else if (kind === op.index) {
     const chunk = index.chunks.at(-1);

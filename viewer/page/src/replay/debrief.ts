@@ -10,6 +10,8 @@ import type { RecordedSession } from './session';
 import type { SessionView } from './session_view';
 import type { Note } from './source';
 import { type Review, type Series, valueAt } from './timeline';
+import { beganText, quantity, significant } from '../languages/numbers';
+import { text } from '../languages/text';
 
 const pictureWide = 360;
 const pictureHigh = 270;
@@ -51,7 +53,7 @@ function curves(title: string, unit: string, series: readonly Series[], duration
     chart.append(svg('polyline', { points: points.join(' '), fill: 'none', stroke: colours[k] ?? '#000' }));
   });
   const label = svg('text', { x: '2', y: '10', 'font-size': '11' });
-  label.textContent = `${Number(top.toPrecision(2))} ${unit}`;
+  label.textContent = `${significant(top, 2)} ${unit}`;
   const end = svg('text', { x: String(curveWide), y: String(curveHigh - 2), 'font-size': '11', 'text-anchor': 'end' });
   end.textContent = clockText(durationS);
   chart.append(label, end);
@@ -68,45 +70,56 @@ function metricsList(series: readonly Series[], timeS: number): HTMLElement {
   const rows = series
     .map((s) => ({ ...s, value: valueAt(s, timeS) }))
     .filter((s) => Number.isFinite(s.value) && s.value !== 0)
-    .map((s) => el('li', {}, el('span', {}, s.text), el('span', {}, `${Number(s.value.toPrecision(3))} ${s.unit}`)));
+    .map((s) => el('li', {}, el('span', {}, s.text), el('span', {}, quantity(significant(s.value, 3), s.unit))));
   return el('ul', { class: 'figures' }, ...rows);
 }
 
 /** What lies farthest beyond the band of a group, with the moment to look at. */
 function toWorkOn(review: Review): HTMLElement[] {
   if (review.group === '') return [];
-  const of = `What lies farthest beyond the middle half of ${review.sessions} sessions of the group ${review.group}.`;
+  const { sessions, group } = review;
+  const of = text('What lies farthest beyond the middle half of {sessions} sessions of the group {group}.', {
+    sessions,
+    group,
+  });
   const things = review.toWorkOn.map((t) =>
     el(
       'li',
       {},
       el('b', {}, t.text),
-      `: ${t.value}, where the group has ${t.low} to ${t.high}.`,
-      t.worstS === null ? '' : ` Look at ${clockText(t.worstS)}, where it became worse most.`,
+      `: ${text('{value}, where the group has {low} to {high}.', { value: t.value, low: t.low, high: t.high })}`,
+      t.worstS === null ? '' : ` ${text('Look at {time}, where it became worse most.', { time: clockText(t.worstS) })}`,
     ),
   );
   return [
-    el('h2', {}, 'Three things to work on'),
+    el('h2', {}, text('Three things to work on')),
     el('p', {}, of),
     things.length > 0
       ? el('ol', {}, ...things)
-      : el('p', {}, '✓ Every metric lies within its band or on its better side.'),
+      : el('p', {}, text('✓ Every metric lies within its band or on its better side.')),
   ];
 }
 
 /** This run beside the person's last and best one. */
 function comparison(review: Review): HTMLElement[] {
   if (review.comparison.length === 0) return [];
-  const runs = `${review.earlierRuns} earlier run${review.earlierRuns === 1 ? '' : 's'}`;
+  const runs = text('{count, plural, one {# earlier run} other {# earlier runs}} of this exercise.', {
+    count: review.earlierRuns,
+  });
   const row = (kind: 'th' | 'td', ...texts: string[]) => el('tr', {}, ...texts.map((t) => el(kind, {}, t)));
-  const signs: Record<string, string> = { '1': ' ✓ better', '-1': ' ✗ worse' };
+  const signs: Record<string, string> = { '1': ` ✓ ${text('better')}`, '-1': ` ✗ ${text('worse')}` };
   const lines = review.comparison.map((l) =>
     row('td', l.text + (signs[String(l.change)] ?? ''), l.now, l.last, l.best),
   );
   return [
-    el('h2', {}, 'Beside your earlier runs'),
-    el('p', {}, `${runs} of this exercise. The best one reached all goals with the fewest faults, soonest.`),
-    el('table', {}, el('thead', {}, row('th', '', 'This run', 'Last', 'Best')), el('tbody', {}, ...lines)),
+    el('h2', {}, text('Beside your earlier runs')),
+    el('p', {}, `${runs} ${text('The best one reached all goals with the fewest faults, soonest.')}`),
+    el(
+      'table',
+      {},
+      el('thead', {}, row('th', '', text('This run'), text('Last'), text('Best'))),
+      el('tbody', {}, ...lines),
+    ),
   ];
 }
 
@@ -126,9 +139,9 @@ export async function debrief(
   }
   view.show(await view.find(durationS));
   const state = view.reading.state;
-  const print = el('button', {}, 'Print');
+  const print = el('button', {}, text('Print'));
   print.onclick = () => window.print();
-  const close = el('button', { 'data-answer': 'close' }, 'Back to the recording');
+  const close = el('button', { 'data-answer': 'close' }, text('Back to the recording'));
   const page = el(
     'article',
     { class: 'debrief' },
@@ -137,23 +150,23 @@ export async function debrief(
     el(
       'p',
       {},
-      `Recorded ${session.began.slice(0, 16).replace('T', ' ')}. For training only. No measure of fitness to operate.`,
+      text('Recorded {time}. For training only. No measure of fitness to operate.', { time: beganText(session.began) }),
     ),
     el('section', { class: 'outcome' }, ...(state ? summaryOf({ ...state, recording: '', report: '' }, []) : [])),
     ...(review ? toWorkOn(review) : []),
-    el('h2', {}, 'Key moments'),
+    el('h2', {}, text('Key moments')),
     el('div', { class: 'strip' }, ...strip),
-    el('h2', {}, 'Hands'),
-    curves('Force on tissue', 'N', timeline.hands.slice(0, 2), durationS),
-    curves('Distance of the tips', 'mm', timeline.hands.slice(2, 3), durationS, 1000),
+    el('h2', {}, text('Hands')),
+    curves(text('Force on tissue'), 'N', timeline.hands.slice(0, 2), durationS),
+    curves(text('Distance of the tips'), 'mm', timeline.hands.slice(2, 3), durationS, 1000),
     ...(review ? comparison(review) : []),
     ...(notes.length > 0
       ? [
-          el('h2', {}, 'Notes'),
+          el('h2', {}, text('Notes')),
           el('ul', {}, ...notes.map((n) => el('li', {}, el('b', {}, clockText(n.timeS)), ` ${n.text}`))),
         ]
       : []),
-    el('h2', {}, 'Metrics'),
+    el('h2', {}, text('Metrics')),
     metricsList(timeline.metrics, durationS),
   );
   close.onclick = () => page.remove();

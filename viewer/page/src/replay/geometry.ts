@@ -2,6 +2,7 @@
 // The geometry of recorded pictures (docs/session-format.md): whole multiples of a unit, as differences from the
 // picture before.
 import type { RenderFrame } from '../lcm';
+import { text } from '../languages/text';
 
 const unknown = -0x80000000;
 
@@ -40,11 +41,11 @@ export class GeometryDecoder {
 function read(bytes: Uint8Array, before: List[] | null): List[] {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const need = (at: number, n: number) => {
-    if (at + n > bytes.length) throw new GeometryError('a picture ends too early');
+    if (at + n > bytes.length) throw new GeometryError(text('a picture ends too early'));
   };
   need(0, 5);
   const key = bytes[0] === 1;
-  if (!key && !before) throw new GeometryError('the picture before is missing');
+  if (!key && !before) throw new GeometryError(text('the picture before is missing'));
   const lists: List[] = [];
   let at = 5;
   for (let n = view.getUint32(1, true); n > 0; n--) {
@@ -54,7 +55,7 @@ function read(bytes: Uint8Array, before: List[] | null): List[] {
     const index = view.getInt32(at + 2, true);
     const count = view.getUint32(at + 6, true);
     at += 10;
-    if (kind > 1 || width > 4 || (kind === 0 && count % 3 !== 0)) throw new GeometryError('this is no picture');
+    if (kind > 1 || width > 4 || (kind === 0 && count % 3 !== 0)) throw new GeometryError(text('this is no picture'));
     need(at, width * count);
     const old = key ? undefined : before?.[lists.length];
     const same = old?.kind === kind && old.index === index && old.coded.length === count;
@@ -65,7 +66,7 @@ function read(bytes: Uint8Array, before: List[] | null): List[] {
     });
     at += width * count;
   }
-  if (at !== bytes.length) throw new GeometryError('a picture has too many bytes');
+  if (at !== bytes.length) throw new GeometryError(text('a picture has too many bytes'));
   return lists;
 }
 

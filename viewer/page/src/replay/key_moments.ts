@@ -2,6 +2,9 @@
 // The moments of a recording that are worth a picture: what happened for the first time, the strongest force of each
 // hand, where the things to work on were worst, and the end.
 import type { Review, Series, Timeline } from './timeline';
+import { fixed } from '../languages/numbers';
+import { said } from '../languages/said';
+import { text } from '../languages/text';
 
 export interface KeyMoment {
   timeS: number;
@@ -29,16 +32,21 @@ export function keyMoments(timeline: Timeline, review: Review | null, durationS:
     const key = `${e.kind} ${e.id}`;
     if (unseen.has(e.kind) || seen.has(key) || out.length >= mostEvents) continue;
     seen.add(key);
-    out.push({ timeS: e.timeS, text: e.text || e.kind.replace(/_/g, ' '), bad: e.kind === 'fault' });
+    out.push({ timeS: e.timeS, text: e.text || said(e.kind.replace(/_/g, ' ')), bad: e.kind === 'fault' });
   }
   timeline.hands.slice(0, 2).forEach((hand, k) => {
     const peak = largest(hand);
-    const side = k === 0 ? 'left' : 'right';
-    if (peak)
-      out.push({ timeS: peak.timeS, text: `Largest force, ${side} hand: ${peak.value.toFixed(2)} N`, bad: false });
+    if (!peak) return;
+    const force = `${fixed(peak.value, 2)} N`;
+    const words =
+      k === 0
+        ? text('Largest force, left hand: {force}', { force })
+        : text('Largest force, right hand: {force}', { force });
+    out.push({ timeS: peak.timeS, text: words, bad: false });
   });
   for (const thing of review?.toWorkOn ?? [])
-    if (thing.worstS !== null) out.push({ timeS: thing.worstS, text: `To work on: ${thing.text}`, bad: false });
-  out.push({ timeS: durationS, text: 'The end', bad: false });
+    if (thing.worstS !== null)
+      out.push({ timeS: thing.worstS, text: text('To work on: {what}', { what: thing.text }), bad: false });
+  out.push({ timeS: durationS, text: text('The end'), bad: false });
   return out.sort((a, b) => a.timeS - b.timeS);
 }

@@ -13,7 +13,9 @@ import { Replay, reasonOf } from './replay';
 import { RecordedSession } from './session';
 import { Side } from './side';
 import { type ListedSession, listSessions, sessionOf } from './source';
+import { text } from '../languages/text';
 
+document.title = `Insula: ${text('recorded session')}`;
 const query = new URLSearchParams(location.search);
 const quality: QualityName | null = qualityNames.find((n) => n === query.get('quality')) ?? null;
 const sides = document.getElementById('sides')!;
@@ -41,10 +43,10 @@ async function ask(problem = ''): Promise<void> {
   try {
     sessions = await listSessions();
   } catch (e) {
-    problem ||= `Recordings of this machine cannot be listed: ${reasonOf(e)}`;
+    problem ||= text('Recordings of this machine cannot be listed: {why}', { why: reasonOf(e) });
   }
   const panel = openingPanel(sessions, problem, {
-    title: 'Which session?',
+    title: text('Which session?'),
     named: (name) => {
       query.set('session', name);
       location.search = query.toString();
@@ -66,7 +68,7 @@ async function openFile(file: File): Promise<void> {
 const wanted = query.get('session');
 if (wanted === null) await ask();
 else {
-  hud.replaceChildren(el('div', { class: 'banner', role: 'status' }, `Opening ${wanted} …`));
+  hud.replaceChildren(el('div', { class: 'banner', role: 'status' }, text('Opening {name} …', { name: wanted })));
   try {
     await open(await named(wanted), true);
   } catch (e) {

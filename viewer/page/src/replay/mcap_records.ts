@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The records of an MCAP file (mcap.dev/spec), as far as the page reads them.
+import { text } from '../languages/text';
 
 export const magic = [0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a];
 export const op = {
@@ -37,7 +38,7 @@ export class Bytes {
     return this.bytes.length - this.at;
   }
   take(n: number): Uint8Array {
-    if (n > this.left) throw new ContainerError('ends too early');
+    if (n > this.left) throw new ContainerError(text('ends too early'));
     this.at += n;
     return this.bytes.subarray(this.at - n, this.at);
   }

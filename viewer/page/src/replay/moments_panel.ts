@@ -3,6 +3,7 @@
 import { el } from '../hud/dom';
 import { clockText } from '../hud/state';
 import type { Mark } from './chart';
+import { text } from '../languages/text';
 
 const signs: Record<string, string> = { fault: '✗', goal: '✓', note: '✎' };
 
@@ -15,7 +16,7 @@ export class MomentsPanel {
     private readonly go: (timeS: number) => void,
     private readonly remove: (mark: Mark) => void,
   ) {
-    this.root.append(el('h2', {}, 'Moments'), this.list);
+    this.root.append(el('h2', {}, text('Moments')), this.list);
   }
 
   show(marks: readonly Mark[]): void {
@@ -39,7 +40,11 @@ export class MomentsPanel {
     go.onclick = () => this.go(mark.timeS);
     const item = el('li', {}, go);
     if (mark.kind === 'note') {
-      const away = el('button', { class: 'remove', title: 'remove this note', 'aria-label': 'remove this note' }, '×');
+      const away = el(
+        'button',
+        { class: 'remove', title: text('remove this note'), 'aria-label': text('remove this note') },
+        '×',
+      );
       away.onclick = () => this.remove(mark);
       item.append(away);
     }

@@ -3,11 +3,12 @@
 import { el } from '../hud/dom';
 import { clockText } from '../hud/state';
 import { download, fetchNotes, type Note, notesJson, storeNotes } from './source';
+import { text } from '../languages/text';
 
 export class Notes {
   all: Note[] = [];
   readonly root = el('form', { class: 'panel note-form' });
-  private readonly text = el('input', { type: 'text', maxlength: '500', 'aria-label': 'note' });
+  private readonly words = el('input', { type: 'text', maxlength: '500', 'aria-label': text('note') });
   private readonly label = el('label');
   private timeS = 0;
 
@@ -18,14 +19,14 @@ export class Notes {
     private readonly changed: () => void,
     private readonly fail: (why: string) => void,
   ) {
-    const away = el('button', { type: 'button' }, 'Cancel');
+    const away = el('button', { type: 'button' }, text('Cancel'));
     away.onclick = () => this.close();
-    this.root.append(this.label, this.text, el('button', { type: 'submit' }, 'Keep'), away);
+    this.root.append(this.label, this.words, el('button', { type: 'submit' }, text('Keep')), away);
     this.root.hidden = true;
     this.root.onsubmit = (e) => {
       e.preventDefault();
-      const text = this.text.value.trim();
-      if (text !== '') void this.keep([...this.all, { timeS: this.timeS, text }]);
+      const written = this.words.value.trim();
+      if (written !== '') void this.keep([...this.all, { timeS: this.timeS, text: written }]);
       this.close();
     };
     this.root.addEventListener('keydown', (e) => {
@@ -40,25 +41,25 @@ export class Notes {
       this.all = await fetchNotes(this.name);
       this.changed();
     } catch (e) {
-      this.fail(`Notes cannot be read: ${e instanceof Error ? e.message : String(e)}`);
+      this.fail(text('Notes cannot be read: {why}', { why: e instanceof Error ? e.message : String(e) }));
     }
   }
 
   ask(timeS: number): void {
     this.timeS = timeS;
-    this.label.textContent = `Note at ${clockText(timeS)}`;
-    this.text.value = '';
+    this.label.textContent = text('Note at {time}', { time: clockText(timeS) });
+    this.words.value = '';
     this.root.hidden = false;
-    this.text.focus();
+    this.words.focus();
   }
 
-  remove(timeS: number, text: string): void {
-    void this.keep(this.all.filter((n) => n.timeS !== timeS || n.text !== text));
+  remove(timeS: number, note: string): void {
+    void this.keep(this.all.filter((n) => n.timeS !== timeS || n.text !== note));
   }
 
   private close(): void {
     this.root.hidden = true;
-    this.text.blur();
+    this.words.blur();
   }
 
   /** The page shows only what is kept. */
@@ -70,7 +71,7 @@ export class Notes {
       this.all = notes;
       this.changed();
     } catch (e) {
-      this.fail(`The note is not kept: ${e instanceof Error ? e.message : String(e)}`);
+      this.fail(text('The note is not kept: {why}', { why: e instanceof Error ? e.message : String(e) }));
     }
   }
 }

@@ -2,6 +2,9 @@
 // The question which recording to look at: one of this machine's, or a file.
 import { el } from '../hud/dom';
 import type { ListedSession } from './source';
+import { languageSelect } from '../languages/language_select';
+import { fixed } from '../languages/numbers';
+import { text } from '../languages/text';
 
 export interface Opening {
   title: string;
@@ -11,10 +14,10 @@ export interface Opening {
   cancel?(): void;
 }
 
-const sizeText = (bytes: number): string => `${(bytes / 1e6).toFixed(1)} MB`;
+const sizeText = (bytes: number): string => `${fixed(bytes / 1e6, 1)} MB`;
 
 export function openingPanel(sessions: readonly ListedSession[], problem: string, actions: Opening): HTMLElement {
-  const input = el('input', { type: 'file', accept: '.insula,.mcap', 'aria-label': 'a file' });
+  const input = el('input', { type: 'file', accept: '.insula,.mcap', 'aria-label': text('a file') });
   input.onchange = () => {
     const file = input.files?.[0];
     if (file) actions.file(file);
@@ -24,9 +27,9 @@ export function openingPanel(sessions: readonly ListedSession[], problem: string
     button.onclick = () => actions.named(s.name);
     return el('li', {}, button);
   });
-  const none = items.length === 0 ? [el('p', { class: 'quiet' }, 'No recordings are offered here.')] : [];
+  const none = items.length === 0 ? [el('p', { class: 'quiet' }, text('No recordings are offered here.'))] : [];
   const cancel = actions.cancel;
-  const away = el('button', {}, 'Cancel');
+  const away = el('button', {}, text('Cancel'));
   away.onclick = () => cancel?.();
   return el(
     'section',
@@ -35,7 +38,8 @@ export function openingPanel(sessions: readonly ListedSession[], problem: string
     ...(problem ? [el('p', { class: 'bad', role: 'alert' }, problem)] : []),
     el('ul', {}, ...items),
     ...none,
-    el('label', {}, 'Or a file: ', input),
+    el('label', {}, text('Or a file:'), ' ', input),
     ...(cancel ? [away] : []),
+    languageSelect(),
   );
 }

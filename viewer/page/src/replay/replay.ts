@@ -11,12 +11,16 @@ import { MomentsPanel } from './moments_panel';
 import { Notes } from './notes';
 import { ReplaySound } from './replay_sound';
 import { Rest } from './rest';
-import type { RecordedSession } from './session';
 import type { Side } from './side';
+import { ghostLink } from './ghost_link';
 import { download } from './source';
 import { freshStatus, type ReplayStatus } from './status';
 import { Transport } from './transport';
 import { VideoRecorder } from './video';
+import { spoken } from '../bundle';
+import { languageSelect } from '../languages/language_select';
+import { fixed } from '../languages/numbers';
+import { text } from '../languages/text';
 
 /** Events that a person looks for. */
 const shownKinds = new Set(['goal', 'fault', 'message', 'command', 'complication', 'mode', 'refused']);
@@ -27,13 +31,6 @@ const fineStepS = 0.1;
 const shiftStepS = 0.5;
 
 export const reasonOf = (e: unknown): string => (e instanceof Error ? e.message : String(e));
-
-/** The live exercise with this run's tools over it. */
-function ghostLink(kept: boolean, session: RecordedSession): HTMLElement[] {
-  const href = `./?ghost=${encodeURIComponent(session.name)}`;
-  const link = el('a', { href, target: '_blank', rel: 'noopener' }, 'Practise with these tools as a ghost');
-  return kept ? [el('section', { class: 'panel' }, link)] : [];
-}
 
 export class Replay {
   private readonly clock: ReplayClock;
@@ -86,7 +83,12 @@ export class Replay {
       (mark) => this.notes.remove(mark.timeS, mark.text),
     );
     for (const s of sides) s.shiftS = (s.session.timeline.passesS[0] ?? 0) - (session.timeline.passesS[0] ?? 0);
-    const warning = el('footer', {}, el('span', { class: 'warn' }, 'For training only. Not for patient care.'));
+    const warning = el(
+      'footer',
+      {},
+      el('span', { class: 'warn' }, text('For training only. Not for patient care.')),
+      languageSelect(),
+    );
     const right = el(
       'div',
       { class: 'column right' },
@@ -107,7 +109,7 @@ export class Replay {
   /** Draws from now on. */
   begin(): void {
     this.showMarks();
-    if (!this.first.session.ended) this.say('This recording was not ended; it is shown as far as it goes.');
+    if (!this.first.session.ended) this.say(text('This recording was not ended; it is shown as far as it goes.'));
     void this.notes.load();
     const pace = new Pace((fps, seconds) => this.sides.forEach((s) => s.view.observe(fps, seconds)));
     let drawing = false;
@@ -129,7 +131,7 @@ export class Replay {
       }
       drawing = true;
       (rests ? this.rehearse() : picture(now))
-        .catch((e: unknown) => this.say(`The recording cannot be read: ${reasonOf(e)}`))
+        .catch((e: unknown) => this.say(text('The recording cannot be read: {why}', { why: reasonOf(e) })))
         .finally(() => (drawing = false));
     });
   }
@@ -217,7 +219,7 @@ export class Replay {
   private showMarks(): void {
     const events = this.first.session.timeline.events.filter((e) => shownKinds.has(e.kind));
     const marks: Mark[] = [
-      ...events.map((e) => ({ timeS: e.timeS, kind: e.kind, text: e.text || `${e.kind} ${e.id}` })),
+      ...events.map((e) => ({ timeS: e.timeS, kind: e.kind, text: e.text || `${spoken(e.kind)} ${spoken(e.id)}` })),
       ...this.notes.all.map((n) => ({ timeS: n.timeS, kind: 'note', text: n.text })),
     ];
     marks.sort((a, b) => a.timeS - b.timeS);
@@ -235,7 +237,7 @@ export class Replay {
     try {
       this.hud.append(await debrief(this.first.session, this.first.view, this.notes.all));
     } catch (e) {
-      this.say(`The recording cannot be read: ${reasonOf(e)}`);
+      this.say(text('The recording cannot be read: {why}', { why: reasonOf(e) }));
     }
     this.rest.wake();
   }
@@ -248,7 +250,7 @@ export class Replay {
       this.status.video_bytes = video.size;
       download(`${this.first.session.name}.webm`, video);
     } catch (e) {
-      this.say(`No video: ${reasonOf(e)}`);
+      this.say(text('No video: {why}', { why: reasonOf(e) }));
     }
   }
 
@@ -256,23 +258,23 @@ export class Replay {
   private shiftPanel(): HTMLElement[] {
     const second = this.sides[1];
     if (!second) return [];
-    const text = el('span');
-    const show = () => (text.textContent = `${second.session.name}: ${second.shiftS.toFixed(1)} s`);
+    const words = el('span');
+    const show = () => (words.textContent = `${second.session.name}: ${fixed(second.shiftS, 1)} s`);
     const shift = (by: number) => {
       second.shiftS += by;
       show();
       this.jumped();
     };
-    const earlier = el('button', {}, '− 0.5 s');
+    const earlier = el('button', {}, `− ${fixed(shiftStepS, 1)} s`);
     earlier.onclick = () => shift(-shiftStepS);
-    const later = el('button', {}, '+ 0.5 s');
+    const later = el('button', {}, `+ ${fixed(shiftStepS, 1)} s`);
     later.onclick = () => shift(shiftStepS);
     show();
-    return [el('section', { class: 'panel shift' }, el('h2', {}, 'Second session'), text, earlier, later)];
+    return [el('section', { class: 'panel shift' }, el('h2', {}, text('Second session')), words, earlier, later)];
   }
 
-  private say(text: string): void {
-    this.toast.textContent = text;
+  private say(words: string): void {
+    this.toast.textContent = words;
     this.toast.hidden = false;
     setTimeout(() => (this.toast.hidden = true), 6000);
   }

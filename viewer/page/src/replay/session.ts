@@ -7,6 +7,8 @@ import { Container, unpacked } from './container';
 import { ContainerError } from './mcap_records';
 import { Pictures } from './pictures';
 import { Timeline } from './timeline';
+import { said } from '../languages/said';
+import { text } from '../languages/text';
 
 const bundlePrefix = 'bundle/';
 
@@ -36,9 +38,9 @@ export class RecordedSession {
   static async open(name: string, source: ByteSource): Promise<RecordedSession> {
     const container = await Container.open(source);
     const about = container.metadata.get('session');
-    if (!about) throw new ContainerError('the recording does not say which scene it has');
+    if (!about) throw new ContainerError(text('the recording does not say which scene it has'));
     if (!container.has(`${bundlePrefix}scene.json.zst`))
-      throw new ContainerError('this recording has no pictures; it was made by an earlier version');
+      throw new ContainerError(text('this recording has no pictures; it was made by an earlier version'));
     return new RecordedSession(name, about, container);
   }
 
@@ -47,7 +49,7 @@ export class RecordedSession {
     about: ReadonlyMap<string, string>,
     private readonly container: Container,
   ) {
-    this.title = about.get('title') ?? '';
+    this.title = said(about.get('title') ?? '');
     this.began = about.get('began') ?? '';
     this.pictures = new Pictures(container);
     this.durationS = this.container.chunks.reduce((t, c) => Math.max(t, c.lastS), 0);

@@ -8,6 +8,8 @@ import { controlMicroscope } from './microscope_control';
 import type { RunGhost } from './run_ghost';
 import type { RecordedSession } from './session';
 import { SessionView } from './session_view';
+import { beganText } from '../languages/numbers';
+import { text } from '../languages/text';
 
 export class Side {
   readonly root: HTMLElement;
@@ -24,8 +26,11 @@ export class Side {
     readonly session: RecordedSession,
     quality: QualityName | null,
   ) {
-    const canvas = el('canvas', { tabindex: '0', 'aria-label': `recorded field of ${session.name}` });
-    const name = el('h1', { class: 'session-name' }, session.name, el('small', {}, session.began));
+    const canvas = el('canvas', {
+      tabindex: '0',
+      'aria-label': text('recorded field of {name}', { name: session.name }),
+    });
+    const name = el('h1', { class: 'session-name' }, session.name, el('small', {}, beganText(session.began)));
     this.left = el('div', { class: 'column left' }, name, this.vitals.root, this.exercise.root, this.problem);
     this.root = el('div', { class: 'side' }, canvas, this.left);
     this.view = new SessionView(canvas, quality);
@@ -52,7 +57,7 @@ export class Side {
   /** What the exercise said at the picture's time. */
   showPanels(): void {
     const { reading, moment } = this.view;
-    const lines = [...(moment ? [] : ['There is no picture at this time.']), ...this.session.damage];
+    const lines = [...(moment ? [] : [text('There is no picture at this time.')]), ...this.session.damage];
     setText(this.problem, lines.join('\n'));
     if (!moment) return;
     const frame = moment.before.frame;

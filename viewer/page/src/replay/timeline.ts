@@ -4,6 +4,8 @@
 import { finite, type Json, list, text } from '../hud/state';
 import { sim_event_t } from '../lcm';
 import type { Container, TopicMessage } from './container';
+import { said } from '../languages/said';
+import { text as message } from '../languages/text';
 
 export interface Happening {
   timeS: number;
@@ -51,9 +53,9 @@ class Samples {
 }
 
 const handCurves = [
-  { id: 'left_force', text: 'Left hand on tissue', unit: 'N' },
-  { id: 'right_force', text: 'Right hand on tissue', unit: 'N' },
-  { id: 'tip_separation', text: 'Distance of the tips', unit: 'm' },
+  { id: 'left_force', text: message('Left hand on tissue'), unit: 'N' },
+  { id: 'right_force', text: message('Right hand on tissue'), unit: 'N' },
+  { id: 'tip_separation', text: message('Distance of the tips'), unit: 'm' },
 ];
 
 export class Timeline {
@@ -112,7 +114,7 @@ export class Timeline {
   private addEvent(timeS: number, data: Uint8Array): void {
     try {
       const e = sim_event_t.decode(data);
-      this.events.push({ timeS, kind: e.kind, id: e.id, text: e.text });
+      this.events.push({ timeS, kind: e.kind, id: e.id, text: said(e.text) });
     } catch {
       // A damaged one is left out.
     }
@@ -128,12 +130,12 @@ export class Timeline {
       sessions: finite(review.sessions) ?? 0,
       toWorkOn: list(review.to_work_on).map((t) => {
         const worstS = finite(t.worst_s);
-        const words = { text: text(t.text), value: text(t.value), low: text(t.low), high: text(t.high) };
+        const words = { text: said(text(t.text)), value: text(t.value), low: text(t.low), high: text(t.high) };
         return { ...words, worstS: worstS === null ? null : beginS + worstS };
       }),
       earlierRuns: finite(review.earlier_runs) ?? 0,
       comparison: list(review.comparison).map((l) => ({
-        ...{ text: text(l.text), now: text(l.now), last: text(l.last), best: text(l.best) },
+        ...{ text: said(text(l.text)), now: text(l.now), last: text(l.last), best: text(l.best) },
         change: Math.sign(finite(l.change) ?? 0),
       })),
     };
@@ -149,6 +151,11 @@ export class Timeline {
   }
 }
 
+function withHand(metric: string, hand: string): string {
+  if (hand === 'left') return message('{metric}, left hand', { metric });
+  return hand === 'right' ? message('{metric}, right hand', { metric }) : metric;
+}
+
 function addMetric(
   to: Map<string, { about: Pick<Series, 'id' | 'text' | 'unit'>; samples: Samples }>,
   timeS: number,
@@ -159,8 +166,8 @@ function addMetric(
   let found = to.get(id);
   if (!found) {
     const hand = text(value.hand);
-    const words = called.get(text(value.id)) ?? text(value.id).replace(/[_.]/g, ' ');
-    const about = { id, text: hand === 'both' ? words : `${words}, ${hand}`, unit: text(value.unit) };
+    const words = said(called.get(text(value.id)) ?? text(value.id).replace(/[_.]/g, ' '));
+    const about = { id, text: withHand(words, hand), unit: text(value.unit) };
     to.set(id, (found = { about, samples: new Samples() }));
   }
   found.samples.add(timeS, [value.value], 1);

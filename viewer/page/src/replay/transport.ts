@@ -5,6 +5,8 @@ import { clockText } from '../hud/state';
 import { TimelineChart } from './chart';
 import { type ReplayClock, speeds } from './clock';
 import type { Series, Timeline } from './timeline';
+import { significant } from '../languages/numbers';
+import { text } from '../languages/text';
 
 export interface TransportActions {
   /** The time was moved by hand. */
@@ -20,11 +22,11 @@ export interface TransportActions {
 export class Transport {
   readonly root: HTMLElement;
   readonly chart: TimelineChart;
-  private readonly play = el('button', { class: 'play', title: 'Space' }, 'Play');
+  private readonly play = el('button', { class: 'play', title: text('Space') }, text('Play'));
   private readonly time = el('span', { class: 'clock' });
-  private readonly speed = el('select', { title: 'speed', 'aria-label': 'speed' });
-  private readonly curve = el('select', { title: 'second curve', 'aria-label': 'second curve' });
-  private readonly video = el('button', { title: 'WebM of the chosen stretch' }, 'Video');
+  private readonly speed = el('select', { title: text('speed'), 'aria-label': text('speed') });
+  private readonly curve = el('select', { title: text('second curve'), 'aria-label': text('second curve') });
+  private readonly video = el('button', { title: text('WebM of the chosen stretch') }, text('Video'));
   private readonly stretch = el('span', { class: 'stretch' });
 
   constructor(
@@ -33,7 +35,7 @@ export class Transport {
     private readonly actions: TransportActions,
   ) {
     this.chart = new TimelineChart(clock, () => actions.moved());
-    for (const s of speeds) this.speed.append(el('option', { value: String(s) }, `${s}×`));
+    for (const s of speeds) this.speed.append(el('option', { value: String(s) }, `${significant(s, 3)}×`));
     this.play.onclick = () => clock.toggle();
     this.speed.onchange = () => (clock.speed = Number(this.speed.value));
     this.fillCurves();
@@ -48,13 +50,16 @@ export class Transport {
   /** Once a picture. */
   draw(recording: boolean): void {
     const { clock } = this;
-    setText(this.play, clock.playing ? 'Pause' : 'Play');
+    setText(this.play, clock.playing ? text('Pause') : text('Play'));
     setText(this.time, `${clockText(clock.timeS)} / ${clockText(clock.durationS)}`);
     if (Number(this.speed.value) !== clock.speed) this.speed.value = String(clock.speed);
-    setText(this.video, recording ? 'Recording …' : 'Video');
+    setText(this.video, recording ? text('Recording …') : text('Video'));
     this.video.disabled = recording;
     const s = clock.stretch;
-    setText(this.stretch, s ? `${clockText(s.fromS)} to ${clockText(s.toS)}` : 'whole recording');
+    setText(
+      this.stretch,
+      s ? text('{from} to {to}', { from: clockText(s.fromS), to: clockText(s.toS) }) : text('whole recording'),
+    );
     this.chart.draw();
   }
 
@@ -66,8 +71,8 @@ export class Transport {
   }
 
   private makeButtons(): HTMLElement[] {
-    const button = (text: string, title: string, run: () => void) => {
-      const b = el('button', { title }, text);
+    const button = (words: string, title: string, run: () => void) => {
+      const b = el('button', { title }, words);
       b.onclick = run;
       return b;
     };
@@ -79,18 +84,18 @@ export class Transport {
       this.play,
       this.time,
       this.speed,
-      button('◂ Fault', 'B', () => this.jumpToFault(-1)),
-      button('Fault ▸', 'F', () => this.jumpToFault(1)),
+      button(text('◂ Fault'), 'B', () => this.jumpToFault(-1)),
+      button(text('Fault ▸'), 'F', () => this.jumpToFault(1)),
       el('span', { class: 'gap' }),
-      el('label', {}, arrows, 'Forces'),
+      el('label', {}, arrows, text('Forces')),
       this.curve,
-      button('Moments', 'M', () => this.actions.moments()),
-      button('Note', 'N', () => this.actions.note()),
-      button('From here', '[', mark('from')),
-      button('To here', ']', mark('to')),
+      button(text('Moments'), 'M', () => this.actions.moments()),
+      button(text('Note'), 'N', () => this.actions.note()),
+      button(text('From here'), '[', mark('from')),
+      button(text('To here'), ']', mark('to')),
       this.stretch,
       this.video,
-      button('Debrief', 'a page to talk about and to print', () => this.actions.debrief()),
+      button(text('Debrief'), text('a page to talk about and to print'), () => this.actions.debrief()),
     ];
   }
 
@@ -98,9 +103,9 @@ export class Transport {
     const { hands, metrics, channels } = this.timeline;
     const separation = hands[2]!;
     const groups: [string, readonly Series[]][] = [
-      ['Hands', [separation]],
-      ['Metrics', metrics],
-      ['Channels', channels],
+      [text('Hands'), [separation]],
+      [text('Metrics'), metrics],
+      [text('Channels'), channels],
     ];
     const all = groups.flatMap(([, series]) => series);
     let n = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A video (WebM) of a stretch of the recording, taken from the canvas while the stretch is played once.
 import type { ReplayClock, Stretch } from './clock';
+import { text } from '../languages/text';
 
 const framesPerSecond = 30;
 const bitsPerSecond = 6_000_000;
@@ -51,7 +52,7 @@ export class VideoRecorder {
     await stopped;
     this.recorder = null;
     for (const track of stream.getTracks()) track.stop();
-    if (size() === 0) throw new Error('this browser encoded no picture');
+    if (size() === 0) throw new Error(text('this browser encoded no picture'));
     return new Blob(parts, { type: 'video/webm' });
   }
 }

@@ -2,15 +2,16 @@
 // What is heard of what: the only place that joins kinds of events, tools, materials and declared data with voices.
 // Nothing here names a part of a scene. A plugin that emits one of these kinds, or declares such data, is heard.
 import type { ChannelData, DrawableData, MaterialData } from '../step_data/declarations';
+import { text } from '../languages/text';
 
 /** What can be switched on and off by itself. */
 export const groups = ['monitor', 'instruments', 'alarms'] as const;
 export type Group = (typeof groups)[number];
 
 export const groupNames: Record<Group, { short: string; whole: string }> = {
-  monitor: { short: 'Monitor', whole: 'patient monitor' },
-  instruments: { short: 'Instruments', whole: 'instruments and field' },
-  alarms: { short: 'Alarms', whole: 'alarms' },
+  monitor: { short: text('Monitor'), whole: text('sounds of the patient monitor') },
+  instruments: { short: text('Instruments'), whole: text('sounds of instruments and field') },
+  alarms: { short: text('Alarms'), whole: text('sounds of alarms') },
 };
 
 export type Voice = 'heart' | 'clip' | 'strand' | 'contact' | 'drop' | 'suction' | 'alarm';

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the start page asks the gateway for, and checks before use.
+import { said } from '../languages/said';
+import { text as message } from '../languages/text';
 
 export interface Exercise {
   scene: string;
@@ -70,8 +72,8 @@ export function exercisesOf(json: unknown): Exercise[] {
     .map((e) => ({
       scene: text(e.scene),
       group: text(e.group),
-      title: text(e.title),
-      text: text(e.text),
+      title: said(text(e.title)),
+      text: said(text(e.text)),
       picture: e.picture === true,
     }))
     .filter((e) => e.scene !== '');
@@ -120,7 +122,7 @@ export function curvesOf(json: unknown): Curve[] {
   return list(json).map((c) => ({
     metric: text(c.metric),
     hand: text(c.hand),
-    text: text(c.text),
+    text: said(text(c.text)),
     unit: text(c.unit),
     better: text(c.better),
     digits: Math.min(6, Math.max(0, number(c.digits))),
@@ -152,7 +154,8 @@ export class Api {
       body ? { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body) } : {},
     );
     const json: unknown = await answer.json().catch(() => ({}));
-    if (!answer.ok) throw new Error(text(object(json).error) || `the gateway answered ${answer.status}`);
+    if (!answer.ok)
+      throw new Error(text(object(json).error) || message('the gateway answered {status}', { status: answer.status }));
     return json;
   }
 

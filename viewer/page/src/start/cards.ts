@@ -3,6 +3,8 @@
 import { el } from '../hud/dom';
 import type { Api, Exercise, History } from './api';
 import { groupTitles, resultText, stateOf, stateText } from './wording';
+import { said } from '../languages/said';
+import { text } from '../languages/text';
 
 export interface CardActions {
   begin: (exercise: Exercise) => void;
@@ -25,7 +27,7 @@ export class Cards {
         el(
           'section',
           { class: 'group' },
-          el('h2', {}, groupTitles[group] ?? group),
+          el('h2', {}, groupTitles[group] ?? said(group)),
           el(
             'ul',
             { class: 'cards' },
@@ -37,18 +39,21 @@ export class Cards {
       ),
     );
     if (exercises.length === 0)
-      this.root.replaceChildren(el('p', { class: 'hint' }, 'No exercises were found beside this program.'));
+      this.root.replaceChildren(el('p', { class: 'hint' }, text('No exercises were found beside this program.')));
   }
 
   private card(e: Exercise, history: History | undefined, running: boolean): HTMLElement {
     const state = stateOf(history);
-    const begin = el('button', { type: 'button' }, running ? 'Continue' : 'Begin');
-    begin.setAttribute('aria-label', `${begin.textContent} ${e.title}`);
+    const begin = el('button', { type: 'button' }, running ? text('Continue') : text('Begin'));
+    begin.setAttribute(
+      'aria-label',
+      running ? text('Continue: {exercise}', { exercise: e.title }) : text('Begin: {exercise}', { exercise: e.title }),
+    );
     begin.onclick = () => this.actions.begin(e);
     const buttons = [begin];
     if (history) {
-      const progress = el('button', { type: 'button', class: 'plain' }, 'Progress');
-      progress.setAttribute('aria-label', `Progress in ${e.title}`);
+      const progress = el('button', { type: 'button', class: 'plain' }, text('Progress'));
+      progress.setAttribute('aria-label', text('Progress in {exercise}', { exercise: e.title }));
       progress.onclick = () => this.actions.progress(e);
       buttons.push(progress);
     }
@@ -57,9 +62,9 @@ export class Cards {
       : el('div', { class: 'no-picture', 'aria-hidden': 'true' }, e.title.slice(0, 1));
     const results = history?.last
       ? [
-          el('p', { class: 'result' }, `Last: ${resultText(history.last)}`),
+          el('p', { class: 'result' }, text('Last: {result}', { result: resultText(history.last) })),
           ...(history.best && history.best.uuid !== history.last.uuid
-            ? [el('p', { class: 'result' }, `Best: ${resultText(history.best)}`)]
+            ? [el('p', { class: 'result' }, text('Best: {result}', { result: resultText(history.best) }))]
             : []),
         ]
       : [];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A learning curve as a picture: a metric over the attempts, with its median of the last five.
 import type { Curve } from './api';
+import { fixed, momentText, quantity } from '../languages/numbers';
 
 const svg = 'http://www.w3.org/2000/svg';
 const width = 300;
@@ -55,8 +56,8 @@ export function curvePicture(curve: Curve, label: string): SVGSVGElement {
       class: point.mode === 'test' ? 'test' : 'practice',
     });
     const title = add(dot, 'title', {});
-    const when = new Date(point.beganMs).toLocaleString();
-    title.textContent = `${when}: ${point.value.toFixed(curve.digits)} ${curve.unit}`;
+    const when = momentText(new Date(point.beganMs));
+    title.textContent = `${when}: ${quantity(fixed(point.value, curve.digits), curve.unit)}`;
   });
   return root;
 }

@@ -3,22 +3,36 @@
 import { browserStore } from '../browser_store';
 import { el } from '../hud/dom';
 import type { Api, Person } from './api';
+import { text } from '../languages/text';
 
-const roles = ['student', 'resident', 'fellow', 'specialist', 'instructor', 'other'];
-const hands = ['right', 'left', 'both', 'not said'];
+/** What is kept and what is read. */
+const roles: Record<string, string> = {
+  student: text('student'),
+  resident: text('resident'),
+  fellow: text('fellow'),
+  specialist: text('specialist'),
+  instructor: text('instructor'),
+  other: text('other'),
+};
+const hands: Record<string, string> = {
+  right: text('right'),
+  left: text('left'),
+  both: text('both'),
+  'not said': text('not said'),
+};
 const kept = 'insula.person';
 
-const options = (values: readonly string[], chosen: string): HTMLOptionElement[] =>
-  values.map((v) => {
-    const o = el('option', { value: v }, v);
+const options = (values: Readonly<Record<string, string>>, chosen: string): HTMLOptionElement[] =>
+  Object.entries(values).map(([v, read]) => {
+    const o = el('option', { value: v }, read);
     o.selected = v === chosen;
     return o;
   });
 
 export class People {
   readonly root = el('section', { class: 'people', 'aria-labelledby': 'people-title' });
-  private readonly select = el('select', { id: 'person', 'aria-label': 'who you are' });
-  private readonly add = el('button', { type: 'button', class: 'plain' }, 'Add a person');
+  private readonly select = el('select', { id: 'person', 'aria-label': text('who you are') });
+  private readonly add = el('button', { type: 'button', class: 'plain' }, text('Add a person'));
   private readonly form = el('form', { class: 'add-person' });
   private readonly pseudonym = el('input', { id: 'pseudonym', maxlength: '40', required: '', autocomplete: 'off' });
   private readonly role = el('select', { id: 'role' }, ...options(roles, 'resident'));
@@ -33,24 +47,24 @@ export class People {
     private readonly changed: (person: string) => void,
   ) {
     const field = (label: string, input: HTMLElement) => el('label', {}, el('span', {}, label), input);
-    const cancel = el('button', { type: 'button', class: 'plain' }, 'Cancel');
+    const cancel = el('button', { type: 'button', class: 'plain' }, text('Cancel'));
     this.form.append(
-      field('Pseudonym', this.pseudonym),
-      field('Role', this.role),
-      field('Better hand', this.hand),
-      field('Year of training', this.year),
-      el('div', { class: 'row' }, el('button', { type: 'submit' }, 'Add'), cancel),
+      field(text('Pseudonym'), this.pseudonym),
+      field(text('Role'), this.role),
+      field(text('Better hand'), this.hand),
+      field(text('Year of training'), this.year),
+      el('div', { class: 'row' }, el('button', { type: 'submit' }, text('Add')), cancel),
       this.wrong,
     );
     this.form.hidden = true;
     this.root.append(
-      el('h2', { id: 'people-title' }, 'Who are you?'),
+      el('h2', { id: 'people-title' }, text('Who are you?')),
       el('div', { class: 'row' }, this.select, this.add),
       this.form,
       el(
         'p',
         { class: 'hint' },
-        'Your runs are kept on this machine under a pseudonym of yours. A guest needs nothing.',
+        text('Your runs are kept on this machine under a pseudonym of yours. A guest needs nothing.'),
       ),
     );
     this.select.onchange = () => this.choose(this.select.value);
@@ -74,9 +88,12 @@ export class People {
   }
 
   private show(chosen: string): void {
-    const guest = el('option', { value: '' }, 'Guest');
+    const guest = el('option', { value: '' }, text('Guest'));
     const others = this.people.map((p) => {
-      const more = [p.role === 'other' ? '' : p.role, p.year > 0 ? `year ${p.year}` : ''].filter((t) => t !== '');
+      const more = [
+        p.role === 'other' ? '' : (roles[p.role] ?? p.role),
+        p.year > 0 ? text('year {year}', { year: p.year }) : '',
+      ].filter((t) => t !== '');
       return el(
         'option',
         { value: p.pseudonym },

@@ -3,8 +3,13 @@
 import { el } from '../hud/dom';
 import type { Api, Curve, Exercise } from './api';
 import { curvePicture } from './curve';
+import { fixed, quantity } from '../languages/numbers';
+import { text } from '../languages/text';
 
-const hands: Readonly<Record<string, string>> = { left: ', left hand', right: ', right hand', both: '' };
+function nameOf(c: Curve): string {
+  if (c.hand === 'left') return text('{metric}, left hand', { metric: c.text });
+  return c.hand === 'right' ? text('{metric}, right hand', { metric: c.text }) : c.text;
+}
 
 /** Curves worth a look: known direction, and values that differ. Largest change between first and last third first. */
 export function ranked(curves: readonly Curve[]): Curve[] {
@@ -22,19 +27,33 @@ export function ranked(curves: readonly Curve[]): Curve[] {
     .map((r) => r.c);
 }
 
-const number = (c: Curve, value: number): string => `${value.toFixed(c.digits)}${c.unit === '' ? '' : ` ${c.unit}`}`;
+const number = (c: Curve, value: number): string => quantity(fixed(value, c.digits), c.unit);
 
 function curveBox(c: Curve): HTMLElement {
   const values = c.points.map((p) => p.value);
   const best = c.better === 'high' ? Math.max(...values) : Math.min(...values);
   const last = values[values.length - 1]!;
-  const name = `${c.text}${hands[c.hand] ?? ''}`;
+  const name = nameOf(c);
+  const numbers = { last: number(c, last), best: number(c, best) };
   return el(
     'li',
     { class: 'curve' },
     el('h3', {}, name),
-    curvePicture(c, `${name}: ${values.length} attempts, last ${number(c, last)}, best ${number(c, best)}`),
-    el('p', {}, `last ${number(c, last)}, best ${number(c, best)}, ${c.better === 'high' ? 'more' : 'less'} is better`),
+    curvePicture(
+      c,
+      text('{name}: {count, plural, one {# attempt} other {# attempts}}, last {last}, best {best}', {
+        name,
+        count: values.length,
+        ...numbers,
+      }),
+    ),
+    el(
+      'p',
+      {},
+      c.better === 'high'
+        ? text('last {last}, best {best}, more is better', numbers)
+        : text('last {last}, best {best}, less is better', numbers),
+    ),
   );
 }
 
@@ -45,16 +64,17 @@ export class Progress {
 
   async open(exercise: Exercise, person: string): Promise<void> {
     const curves = ranked(await this.api.curves(person, exercise.scene));
-    const close = el('button', { type: 'button' }, 'Close');
+    const close = el('button', { type: 'button' }, text('Close'));
     close.onclick = () => this.root.close();
     const attempts = curves[0]?.points.length ?? 0;
     this.root.replaceChildren(
-      el('h2', { id: 'progress-title' }, `${exercise.title}: ${person === '' ? 'guests' : person}`),
+      el('h2', { id: 'progress-title' }, `${exercise.title}: ${person === '' ? text('guests') : person}`),
       el(
         'p',
         { class: 'hint' },
-        `${attempts} attempt${attempts === 1 ? '' : 's'}, from left to right. A line shows the median of the last ` +
-          'five. Full dots are tests, rings are practice.',
+        text('{count, plural, one {# attempt} other {# attempts}}, from left to right.', { count: attempts }),
+        ' ',
+        text('A line shows the median of the last five. Full dots are tests, rings are practice.'),
       ),
       el('ul', { class: 'curves' }, ...curves.map(curveBox)),
       close,

@@ -5,6 +5,8 @@ import type { Api, Exercise, History, Running } from './api';
 import { Cards } from './cards';
 import { People } from './people';
 import { Progress } from './progress';
+import { languageSelect } from '../languages/language_select';
+import { text } from '../languages/text';
 
 const pollMs = 200;
 const patienceMs = 60_000;
@@ -35,7 +37,12 @@ export class StartPage {
         'header',
         { class: 'top' },
         el('h1', {}, 'Insula'),
-        el('p', {}, 'Aneurysm surgery with two-handed haptics. For training only, never for the care of patients.'),
+        el(
+          'p',
+          {},
+          text('Aneurysm surgery with two-handed haptics. For training only, never for the care of patients.'),
+        ),
+        languageSelect(),
       ),
       el('main', {}, this.people.root, this.say, this.cards.root),
       this.progress.root,
@@ -58,14 +65,14 @@ export class StartPage {
     if (person === this.people.person) this.cards.show(this.exercises, this.history, this.running.scene);
   }
 
-  private tell(text: string): void {
-    this.say.textContent = text;
+  private tell(words: string): void {
+    this.say.textContent = words;
   }
 
   /** The engine's scene and person may be those that are wanted already; then nothing is loaded. */
   private async begin(e: Exercise): Promise<void> {
     const person = this.people.person;
-    this.tell(`Loading ${e.title} …`);
+    this.tell(text('Loading {exercise} …', { exercise: e.title }));
     try {
       this.running = await this.api.running();
       const there = (r: Running) => r.state === 'running' && r.scene === e.scene && r.person === person;
@@ -73,7 +80,7 @@ export class StartPage {
       const end = performance.now() + patienceMs;
       while (!there(this.running)) {
         if (this.running.state === 'refused' && this.running.scene === e.scene) throw new Error(this.running.text);
-        if (performance.now() > end) throw new Error(`${e.title} has not begun`);
+        if (performance.now() > end) throw new Error(text('{exercise} has not begun', { exercise: e.title }));
         await new Promise((r) => setTimeout(r, pollMs));
         this.running = await this.api.running();
       }

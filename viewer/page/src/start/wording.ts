@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the start page says of runs.
 import type { History, Run } from './api';
+import { text } from '../languages/text';
 
 export const groupTitles: Readonly<Record<string, string>> = {
-  skills: 'First skills',
-  training: 'Exercises',
-  cases: 'Cases',
+  skills: text('First skills'),
+  training: text('Exercises'),
+  cases: text('Cases'),
 };
 
 export function durationText(seconds: number): string {
@@ -13,15 +14,20 @@ export function durationText(seconds: number): string {
   return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, '0')} min`;
 }
 
-const count = (n: number, what: string): string => `${n} ${what}${n === 1 ? '' : 's'}`;
+function goalsText({ state, goals, goalsDone: done }: Run): string {
+  if (state === 'done') return text('all goals');
+  return state === 'failed'
+    ? text('{done} of {goals, plural, one {# goal} other {# goals}}, failed', { done, goals })
+    : text('{done} of {goals, plural, one {# goal} other {# goals}}', { done, goals });
+}
 
 /** "all goals, 2 faults, 1:05 min". */
 export function resultText(run: Run): string {
-  const goals =
-    run.state === 'done'
-      ? 'all goals'
-      : `${run.goalsDone} of ${count(run.goals, 'goal')}${run.state === 'failed' ? ', failed' : ''}`;
-  return `${goals}, ${run.faults === 0 ? 'no fault' : count(run.faults, 'fault')}, ${durationText(run.durationS)}`;
+  const faults =
+    run.faults === 0
+      ? text('no fault')
+      : text('{count, plural, one {# fault} other {# faults}}', { count: run.faults });
+  return [goalsText(run), faults, durationText(run.durationS)].join(', ');
 }
 
 /** 'new', 'begun', or 'done': all goals were reached once. */
@@ -31,7 +37,7 @@ export function stateOf(history: History | undefined): 'new' | 'begun' | 'done' 
 }
 
 export const stateText: Readonly<Record<ReturnType<typeof stateOf>, string>> = {
-  new: 'not tried yet',
-  begun: 'begun',
-  done: '✓ done',
+  new: text('not tried yet'),
+  begun: text('begun'),
+  done: text('✓ done'),
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The channels' numbers of the newest frame, by channel, and how they are written.
 import { type ChannelData, DataError, type Range } from './declarations';
+import { fixed, withoutSign } from '../languages/numbers';
+import { text } from '../languages/text';
 
 export type Level = 'good' | 'high' | 'too_much' | 'none';
 
@@ -50,14 +52,13 @@ export const barShare = (c: ChannelData, value: number | null): number =>
 /** As displayed, without unit; a trickle backwards is 0, not -0. */
 export function numberText(c: ChannelData, value: number | null): string {
   if (value === null) return '–';
-  const s = (value * c.display.scale).toFixed(c.display.digits);
-  return Number(s) === 0 ? s.replace('-', '') : s;
+  return withoutSign(fixed(value * c.display.scale, c.display.digits));
 }
 
 /** As displayed, with unit; of a count with what there was: "24 of 67". */
 export function channelText(c: ChannelData, value: number | null): string {
   const n = numberText(c, value);
-  if (value !== null && isCount(c) && c.max !== null) return `${n} of ${c.max}`;
+  if (value !== null && isCount(c) && c.max !== null) return text('{n} of {all}', { n, all: c.max });
   return value !== null && c.display.unit !== '' ? `${n} ${c.display.unit}` : n;
 }
 

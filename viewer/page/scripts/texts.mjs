@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The texts that catalogues translate: those of the page's sources and those of the shipped exercises.
+//   node scripts/texts.mjs                   how many there are, and how many each language lacks
+//   node scripts/texts.mjs --missing LANG    those without a translation, as JSON to be filled in
+//   node scripts/texts.mjs --stale LANG      translations of texts that are no more
+//   node scripts/texts.mjs --fill LANG FILE  adds the translations of a JSON file; takes out stale ones, sorts
+//   node scripts/texts.mjs --exercises PROGRAM [--check]
+//                                            asks insula for the texts of exercises and keeps them, or compares them
+import { execFileSync } from 'node:child_process';
+import { existsSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { join, relative } from 'node:path';
+import { argv, exit } from 'node:process';
+import { fileURLToPath } from 'node:url';
+import { pageTexts } from './page_texts.mjs';
+
+const here = fileURLToPath(new URL('.', import.meta.url));
+const folder = join(here, '../src/languages/catalogues');
+const kept = join(here, 'exercise_texts.json');
+const scenes = join(here, '../../../scenes');
+const json = (value) => `${JSON.stringify(value, null, 2)}\n`;
+
+export const languages = readdirSync(folder).map((f) => f.replace('.json', ''));
+
+export function catalogue(language) {
+  const file = join(folder, `${language}.json`);
+  if (!existsSync(file)) throw new Error(`no catalogue of "${language}"; there are ${languages.join(', ')}`);
+  return JSON.parse(readFileSync(file, 'utf8'));
+}
+
+/** Numbers as in src/languages/said.ts. A quantity alone needs no translation. */
+function exerciseKey(english) {
+  let n = 0;
+  const key = english.replace(/(?<![\p{L}\d._])\d+(?:\.\d+)?(?![\p{L}\d_])/gu, () => `{${n++}}`);
+  return /^\{0\}( ?(mm|N|deg|%|s|ml|mmHg))?$/.test(key) ? '' : key;
+}
+
+/** Text and kind of each, in order. */
+export const exerciseTexts = () => JSON.parse(readFileSync(kept, 'utf8'));
+
+/** All keys: {key, where}. Throws for a text() whose message is no literal. */
+export function allTexts() {
+  const found = new Map(pageTexts().map((t) => [t.key, t.where]));
+  for (const { key, kind } of exerciseTexts()) if (!found.has(key)) found.set(key, kind);
+  return [...found].map(([key, where]) => ({ key, where }));
+}
+
+export function missing(language) {
+  const has = catalogue(language);
+  return allTexts()
+    .map((t) => t.key)
+    .filter((key) => !Object.hasOwn(has, key));
+}
+
+export function stale(language) {
+  const keys = new Set(allTexts().map((t) => t.key));
+  return Object.keys(catalogue(language)).filter((key) => !keys.has(key));
+}
+
+/** Complete scenes in the folders that the start page offers. */
+function shippedScenes() {
+  return ['training', 'skills', 'cases'].flatMap((group) =>
+    readdirSync(join(scenes, group))
+      .filter((f) => f.endsWith('.xml') && !f.startsWith('bench_'))
+      .sort()
+      .map((f) => join(scenes, group, f)),
+  );
+}
+
+function askedTexts(program) {
+  const out = execFileSync(program, ['texts', ...shippedScenes()], { encoding: 'utf8', maxBuffer: 1 << 24 });
+  const kinds = new Map();
+  for (const { text, kind } of JSON.parse(out)) {
+    const key = exerciseKey(text);
+    if (key !== '' && !kinds.has(key)) kinds.set(key, kind);
+  }
+  return [...kinds].map(([key, kind]) => ({ key, kind }));
+}
+
+function fill(language, file) {
+  const all = { ...catalogue(language), ...JSON.parse(readFileSync(file, 'utf8')) };
+  const keys = allTexts().map((t) => t.key);
+  const entries = keys.filter((key) => typeof all[key] === 'string' && all[key] !== '').map((key) => [key, all[key]]);
+  entries.sort(([a], [b]) => (a < b ? -1 : 1));
+  writeFileSync(join(folder, `${language}.json`), json(Object.fromEntries(entries)));
+}
+
+function exercises(program, check) {
+  const asked = json(askedTexts(program));
+  if (!check) return writeFileSync(kept, asked);
+  if (asked === readFileSync(kept, 'utf8')) return undefined;
+  console.error(
+    `error: ${relative('.', kept)} is not what the program says: node scripts/texts.mjs --exercises PROGRAM`,
+  );
+  exit(1);
+}
+
+function main([what, first, second]) {
+  if (what === '--missing') console.log(json(Object.fromEntries(missing(first).map((key) => [key, '']))).trim());
+  else if (what === '--stale') console.log(json(stale(first)).trim());
+  else if (what === '--fill') fill(first, second);
+  else if (what === '--exercises') exercises(first, second === '--check');
+  else {
+    console.log(`${allTexts().length} texts`);
+    for (const l of languages) console.log(`${l}: ${missing(l).length} missing, ${stale(l).length} stale`);
+  }
+}
+
+if (argv[1] === fileURLToPath(import.meta.url)) {
+  try {
+    main(argv.slice(2));
+  } catch (e) {
+    console.error(`error: ${e.message}`);
+    exit(2);
+  }
+}
