@@ -132,8 +132,8 @@ list(APPEND engine_src ${CMAKE_BINARY_DIR}/generated/new_plugin_files.cpp
 list(FILTER engine_src EXCLUDE REGEX "/engine/main\\.cpp$")
 if(engine_src)
   add_library(insula_engine STATIC ${engine_src})
-  target_link_libraries(insula_engine PUBLIC insula_plugins insula_haptics insula_servo insula_store insula_curriculum
-    PRIVATE OpenSSL::Crypto)
+  target_link_libraries(insula_engine PUBLIC insula_plugins insula_haptics insula_servo insula_store insula_xapi
+    insula_curriculum PRIVATE OpenSSL::Crypto)
   target_compile_definitions(insula_engine PRIVATE INSULA_VERSION="${PROJECT_VERSION}")
 endif()
 if(EXISTS ${PROJECT_SOURCE_DIR}/engine/main.cpp)

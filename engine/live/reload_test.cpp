@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "core/testing/temp_folder.h"
 #include "engine/live/file_watch.h"
 #include "engine/live/notice.h"
 #include "engine/live/scene_files.h"
@@ -19,11 +20,6 @@ namespace {
 
 class Reload : public ::testing::Test {
  protected:
-  Reload() {
-    std::string name = (fs::temp_directory_path() / "insula_reload_XXXXXX").string();
-    folder_ = fs::canonical(::mkdtemp(name.data()));
-  }
-  ~Reload() override { fs::remove_all(folder_); }
   fs::path write(const std::string& name, const std::string& text) const {
     fs::create_directories((folder_ / name).parent_path());
     std::ofstream(folder_ / name) << text;
@@ -36,7 +32,8 @@ class Reload : public ::testing::Test {
       out.push_back(f.lexically_relative(folder_).generic_string());
     return out;
   }
-  fs::path folder_;
+  test_files::TempFolder temporary_;
+  fs::path folder_ = fs::canonical(temporary_.path());
 };
 
 TEST_F(Reload, FilesOfASceneAndOfWhatItIncludes) {

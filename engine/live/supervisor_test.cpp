@@ -13,6 +13,8 @@
 #include <fstream>
 #include <thread>
 
+#include "core/testing/temp_folder.h"
+
 namespace fs = std::filesystem;
 
 namespace insula {
@@ -21,13 +23,10 @@ namespace {
 class SupervisorTest : public ::testing::Test {
  protected:
   SupervisorTest() {
-    std::string name = (fs::temp_directory_path() / "insula_supervisor_XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
     settings_.first_wait_s = 0.02;
     settings_.longest_wait_s = 0.08;
     settings_.patience_s = 0.3;
   }
-  ~SupervisorTest() override { fs::remove_all(folder_); }
 
   static ChildSpec shell(const std::string& name, const std::string& script) {
     ChildSpec spec;
@@ -48,7 +47,8 @@ class SupervisorTest : public ::testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  fs::path folder_;
+  test_files::TempFolder temporary_;
+  fs::path folder_ = temporary_.path();
   SupervisorSettings settings_;
   std::vector<std::string> lines_;
 };

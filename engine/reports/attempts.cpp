@@ -23,8 +23,7 @@ Attempt attempt_of(const training::Run& run) {
 
 std::vector<Attempt> attempts_of(const training::Store& store, const std::string& person) {
   std::vector<Attempt> out;
-  for (const training::Run& summary : store.runs(person, training::Store::all_runs))
-    if (const auto run = store.run(summary.uuid)) out.push_back(attempt_of(*run));
+  for (const training::Run& run : store.full_runs(person)) out.push_back(attempt_of(run));
   return out;
 }
 

@@ -32,6 +32,7 @@ training::Run stored_run(const RunRecorder& recorder, const RunSummary& summary,
   run.guided = exercise.has_guide && summary.mode == name_of(SessionMode::practice);
   run.report = report;
   run.recording = summary.recording;
+  run.version = INSULA_VERSION;
   for (const MetricValue& m : exercise.metrics)
     if (m.known)
       run.metrics.push_back({m.id, std::string(hand_name(m.hand)), m.value, m.text, m.unit,

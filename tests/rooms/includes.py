@@ -20,8 +20,17 @@ FOLDERS = {
     "plugins": {"core"},
     "haptic_server": {"core", "core/bus", "core/haptics"},
     "training/store": {"core"},
+    "training/xapi": {"core", "training/store"},
     "training/curriculum": {"core"},
-    "engine": {"core", "core/bus", "core/haptics", "haptic_server", "training/store", "training/curriculum"},
+    "engine": {
+        "core",
+        "core/bus",
+        "core/haptics",
+        "haptic_server",
+        "training/store",
+        "training/xapi",
+        "training/curriculum",
+    },
     "viewer/gateway": {"core", "core/bus", "training/store"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include "([\w./]+)"')

@@ -24,8 +24,16 @@ void check(sqlite3* database, const std::string& file, int code) {
 void Statement::Finalize::operator()(sqlite3_stmt* s) const { sqlite3_finalize(s); }
 void Statement::check(int code) const { training::check(database_, file_, code); }
 
+void Statement::count(int code) {
+  work_->rows += code == SQLITE_ROW;
+  work_->scanned += sqlite3_stmt_status(statement_.get(), SQLITE_STMTSTATUS_FULLSCAN_STEP, 1);
+  work_->steps += sqlite3_stmt_status(statement_.get(), SQLITE_STMTSTATUS_VM_STEP, 1);
+}
+
 bool Statement::step() {
+  if (!sqlite3_stmt_busy(statement_.get())) ++work_->queries;
   const int code = sqlite3_step(statement_.get());
+  count(code);
   if (code == SQLITE_ROW) return true;
   const int reset = sqlite3_reset(statement_.get());
   check(code == SQLITE_DONE ? reset : code);
@@ -65,7 +73,7 @@ Database::Database(const fs::path& file) : file_(file.string()) {
 Statement Database::prepare(std::string_view sql) const {
   sqlite3_stmt* statement = nullptr;
   check(database_.get(), file_, sqlite3_prepare_v2(database_.get(), sql.data(), int(sql.size()), &statement, nullptr));
-  return {database_.get(), statement, file_};
+  return {database_.get(), statement, file_, *work_};
 }
 
 void Database::run(const std::string& sql) const {

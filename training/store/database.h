@@ -13,6 +13,14 @@ struct sqlite3_stmt;
 
 namespace insula::training {
 
+/// What SQLite has done for the statements of a connection, to see that a query does not read more than it must.
+struct DatabaseWork {
+  std::int64_t queries = 0;  ///< statements that were begun
+  std::int64_t rows = 0;     ///< rows that they gave
+  std::int64_t scanned = 0;  ///< steps through a table that no index served
+  std::int64_t steps = 0;    ///< instructions of SQLite's virtual machine
+};
+
 /// A prepared statement. Parameters are numbered from 1, columns from 0.
 class Statement {
  public:
@@ -41,8 +49,9 @@ class Statement {
   struct Finalize {
     void operator()(sqlite3_stmt* s) const;
   };
-  Statement(sqlite3* database, sqlite3_stmt* statement, std::string file)
-      : database_(database), statement_(statement), file_(std::move(file)) {}
+  Statement(sqlite3* database, sqlite3_stmt* statement, std::string file, DatabaseWork& work)
+      : database_(database), statement_(statement), file_(std::move(file)), work_(&work) {}
+  void count(int code);
   void set(int at, std::int64_t value);
   void set(int at, int value) { set(at, std::int64_t(value)); }
   void set(int at, double value);
@@ -60,6 +69,7 @@ class Statement {
   sqlite3* database_;
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
   std::string file_;
+  DatabaseWork* work_;
 };
 
 class Database {
@@ -77,6 +87,8 @@ class Database {
   /// Copies everything into another file while this one is in use. An existing file is replaced when the copy is whole.
   void back_up(const std::filesystem::path& to) const;
   const std::string& file() const { return file_; }
+  /// Since it was opened.
+  const DatabaseWork& work() const { return *work_; }
 
  private:
   struct Close {
@@ -84,6 +96,7 @@ class Database {
   };
   std::string file_;
   std::unique_ptr<sqlite3, Close> database_;
+  std::unique_ptr<DatabaseWork> work_ = std::make_unique<DatabaseWork>();
 };
 
 /// Everything until commit(), or nothing. It takes the writer's place at once, so it cannot fail halfway for another's

@@ -55,10 +55,12 @@ struct Run {
   std::optional<std::int64_t> seed;  ///< of the complications; none: the scene has none
   bool guided = false;               ///< targets were shown to the hands
   std::string report, recording;     ///< files; empty: none
+  std::string version;               ///< of the program that ran it; empty: not known
   std::vector<RunMetric> metrics;
   std::vector<RunFault> fault_counts;
 
   bool done() const { return state == "done"; }
+  bool is_attempt() const { return !person.empty() && mode != "demonstration"; }  ///< of a person
 };
 
 /// Of one person in one exercise.

@@ -32,6 +32,16 @@ constexpr const char* migrations[] = {
        CREATE TABLE run_faults (
          run INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE, fault TEXT NOT NULL, text TEXT NOT NULL,
          count INTEGER NOT NULL, PRIMARY KEY (run, fault)) WITHOUT ROWID;)",
+    // What learning record stores are to be told. began_ms is that of the run, for the order of sending.
+    R"(ALTER TABLE runs ADD COLUMN version TEXT NOT NULL DEFAULT '';
+       CREATE INDEX runs_by_time ON runs (person, began_ms);
+       CREATE TABLE outbox (
+         run INTEGER PRIMARY KEY REFERENCES runs ON DELETE CASCADE, began_ms INTEGER NOT NULL,
+         state TEXT NOT NULL DEFAULT 'pending', attempts INTEGER NOT NULL DEFAULT 0,
+         next_try_ms INTEGER NOT NULL DEFAULT 0, error TEXT NOT NULL DEFAULT '');
+       CREATE INDEX outbox_in_order ON outbox (state, began_ms, run);
+       CREATE TABLE settings (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+       INSERT INTO settings VALUES ('home_page', 'https://' || lower(hex(randomblob(8))) || '.insula.invalid');)",
 };
 
 int version_of(const Database& database) {

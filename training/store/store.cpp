@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 #include <random>
 
 #include "core/base/input_error.h"
 #include "core/base/text.h"
+#include "training/store/run_details.h"
 #include "training/store/schema.h"
 
 namespace insula::training {
@@ -19,7 +19,7 @@ constexpr const char* person_columns = "id, pseudonym, role, handedness, year, c
 // The person's number is replaced by the pseudonym.
 constexpr const char* run_columns =
     "runs.id, uuid, ifnull((SELECT pseudonym FROM persons WHERE id = runs.person), ''), scene, title, mode, began_ms, "
-    "duration_s, state, goals, goals_done, faults, step_rate_hz, report, recording, seed, guided";
+    "duration_s, state, goals, goals_done, faults, step_rate_hz, report, recording, seed, guided, version";
 // A guest's runs have no person. IS compares NULL too, and uses the index.
 constexpr const char* of_person = "person IS ?1";
 
@@ -48,7 +48,7 @@ Run run_of(const Statement& s) {
   r.goals = int(s.integer(9)), r.goals_done = int(s.integer(10)), r.faults = int(s.integer(11));
   r.step_rate_hz = s.real(12), r.report = s.text(13), r.recording = s.text(14);
   if (!s.null(15)) r.seed = s.integer(15);
-  r.guided = s.integer(16) != 0;
+  r.guided = s.integer(16) != 0, r.version = s.text(17);
   return r;
 }
 
@@ -108,30 +108,38 @@ std::optional<std::int64_t> Store::number_or_new(const std::string& pseudonym) {
   return database_.last_id();
 }
 
-bool Store::add(const Run& run) {
-  Transaction transaction(database_);
+bool Store::insert(const Run& run) {
   const auto person = number_or_new(run.person);
   database_
       .prepare(
           "INSERT INTO runs (uuid, person, scene, title, mode, began_ms, duration_s, state, goals, goals_done, "
-          "faults, step_rate_hz, report, recording, seed, guided) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, "
-          "?11, ?12, ?13, ?14, ?15, ?16) ON CONFLICT (uuid) DO NOTHING")
+          "faults, step_rate_hz, report, recording, seed, guided, version) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, "
+          "?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17) ON CONFLICT (uuid) DO NOTHING")
       .bind(run.uuid, person, run.scene, run.title, run.mode, run.began_ms, run.duration_s, run.state, run.goals,
-            run.goals_done, run.faults, run.step_rate_hz, run.report, run.recording, run.seed, int(run.guided))
+            run.goals_done, run.faults, run.step_rate_hz, run.report, run.recording, run.seed, int(run.guided),
+            run.version)
       .run();
   if (database_.changes() == 0) return false;
   const std::int64_t id = database_.last_id();
-  Statement declares = database_.prepare("INSERT OR REPLACE INTO metrics VALUES (?1, ?2, ?3, ?4, ?5, ?6)");
-  Statement measures = database_.prepare("INSERT OR REPLACE INTO run_metrics VALUES (?1, ?2, ?3, ?4)");
-  for (const RunMetric& m : run.metrics) {
-    if (!std::isfinite(m.value)) continue;
-    declares.bind(run.scene, m.id, m.text, m.unit, m.better, m.digits).run();
-    measures.bind(id, m.id, m.hand, m.value).run();
-  }
-  Statement counts = database_.prepare("INSERT OR REPLACE INTO run_faults VALUES (?1, ?2, ?3, ?4)");
-  for (const RunFault& f : run.fault_counts) counts.bind(id, f.id, f.text, f.count).run();
-  transaction.commit();
+  insert_details(database_, run, id);
+  if (run.is_attempt())
+    database_.prepare("INSERT INTO outbox (run, began_ms) VALUES (?1, ?2)").bind(id, run.began_ms).run();
   return true;
+}
+
+bool Store::add(const Run& run) {
+  Transaction transaction(database_);
+  const bool added = insert(run);
+  if (added) transaction.commit();
+  return added;
+}
+
+std::size_t Store::add(const std::vector<Run>& runs) {
+  Transaction transaction(database_);
+  std::size_t added = 0;
+  for (const Run& run : runs) added += insert(run);
+  transaction.commit();
+  return added;
 }
 
 std::vector<Run> Store::runs(const std::string& person, std::size_t most) const {
@@ -143,21 +151,19 @@ std::vector<Run> Store::runs(const std::string& person, std::size_t most) const 
   return out;
 }
 
+std::vector<Run> Store::full_runs(const std::string& person) const {
+  std::vector<Run> out = runs(person, all_runs);
+  read_details(database_, out, of_person, [&](Statement& s) { s.bind(number_of(person)); });
+  return out;
+}
+
 std::optional<Run> Store::run(const std::string& uuid) const {
   Statement s = database_.prepare(fmt::format("SELECT {} FROM runs WHERE uuid = ?1", run_columns));
   s.bind(uuid);
   if (!s.step()) return std::nullopt;
-  Run run = run_of(s);
-  Statement m = database_.prepare(
-      "SELECT v.metric, v.hand, v.value, m.text, m.unit, m.better, m.digits FROM run_metrics v JOIN metrics m ON "
-      "m.scene = ?2 AND m.metric = v.metric WHERE v.run = ?1 ORDER BY v.metric, v.hand");
-  m.bind(run.id, run.scene);
-  while (m.step())
-    run.metrics.push_back({m.text(0), m.text(1), m.real(2), m.text(3), m.text(4), m.text(5), int(m.integer(6))});
-  Statement f = database_.prepare("SELECT fault, text, count FROM run_faults WHERE run = ?1 ORDER BY fault");
-  f.bind(run.id);
-  while (f.step()) run.fault_counts.push_back({f.text(0), f.text(1), int(f.integer(2))});
-  return run;
+  std::vector<Run> out{run_of(s)};
+  read_details(database_, out, "uuid = ?1", [&](Statement& d) { d.bind(uuid); });
+  return std::move(out[0]);
 }
 
 std::vector<ExerciseHistory> Store::history(const std::string& person) const {

@@ -26,9 +26,13 @@ class Store {
 
   /// Keeps a run. A person who is not known yet is added. False: a run with this uuid is there already.
   bool add(const Run& run);
+  /// Keeps several runs at once, all of them or, after a failure, none. Returns how many were new.
+  std::size_t add(const std::vector<Run>& runs);
   static constexpr std::size_t all_runs = std::size_t(1) << 40;
   /// The newest `most` runs of a person, or of guests if the pseudonym is empty, without metrics and faults by name.
   std::vector<Run> runs(const std::string& person, std::size_t most = 200) const;
+  /// All runs of a person, with metrics and faults, newest first. The number of queries does not depend on the runs.
+  std::vector<Run> full_runs(const std::string& person) const;
   /// With its metrics and faults.
   std::optional<Run> run(const std::string& uuid) const;
   /// One entry for each exercise that the person has run, demonstrations left out, by scene.
@@ -38,8 +42,12 @@ class Store {
 
   /// A copy in one file, made while the store is in use.
   void back_up(const std::filesystem::path& to) const { database_.back_up(to); }
+  const DatabaseWork& work() const { return database_.work(); }
 
  private:
+  friend class Outbox;
+  /// add() within a transaction.
+  bool insert(const Run& run);
   /// Number of the person; none for guests, -1 for somebody who is not there.
   std::optional<std::int64_t> number_of(const std::string& pseudonym) const;
   /// The same. Adds who is not there.

@@ -18,6 +18,7 @@
 
 #include "core/bus/codec.h"
 #include "core/bus/mem_bus.h"
+#include "core/testing/temp_folder.h"
 #include "viewer/gateway/framing.h"
 #include "viewer/gateway/hub.h"
 
@@ -97,8 +98,6 @@ insula_lcm::render_frame_t render_frame(std::int64_t sequence, int nodes = 10) {
 class GatewayTest : public ::testing::Test {
  protected:
   GatewayTest() {
-    std::string name = (fs::temp_directory_path() / "insula_gateway_XXXXXX").string();
-    root_ = ::mkdtemp(name.data());
     fs::create_directories(root_ / "page/assets");
     fs::create_directories(root_ / "bundle");
     write("page/index.html", "<p>page");
@@ -121,10 +120,7 @@ class GatewayTest : public ::testing::Test {
     const std::string error = gateway_->start();
     EXPECT_EQ(error, "");
   }
-  ~GatewayTest() override {
-    gateway_.reset();
-    fs::remove_all(root_);
-  }
+  ~GatewayTest() override { gateway_.reset(); }
   void write(const fs::path& file, std::string_view text) { std::ofstream(root_ / file) << text; }
 
   Response get(const std::string& target, http::verb verb = http::verb::get,
@@ -164,7 +160,8 @@ class GatewayTest : public ::testing::Test {
 
   std::shared_ptr<MemHub> hub_ = std::make_shared<MemHub>();
   MemBus bus_{hub_}, gateway_bus_{hub_};
-  fs::path root_;
+  test_files::TempFolder temporary_;
+  fs::path root_ = temporary_.path();
   std::unique_ptr<Gateway> gateway_;
 };
 

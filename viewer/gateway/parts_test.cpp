@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/testing/temp_folder.h"
 #include "viewer/gateway/bundle.h"
 #include "viewer/gateway/byte_range.h"
 #include "viewer/gateway/outbox.h"
@@ -76,17 +77,15 @@ TEST(ByteRange, PartsOfAFile) {
 class Folder : public ::testing::Test {
  protected:
   Folder() {
-    std::string name = (fs::temp_directory_path() / "insula_gateway_XXXXXX").string();
-    root_ = ::mkdtemp(name.data());
     fs::create_directories(root_ / "page/assets");
     fs::create_directories(root_ / "outside");
     write("outside/secret.bin", "secret");
     write("page/index.html", "<p>page");
     write("page/assets/a.js", "let a");
   }
-  ~Folder() override { fs::remove_all(root_); }
   void write(const fs::path& file, std::string_view text) { std::ofstream(root_ / file) << text; }
-  fs::path root_;
+  test_files::TempFolder temporary_;
+  fs::path root_ = temporary_.path();
 };
 
 TEST_F(Folder, FilesBelow) {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include "core/testing/temp_folder.h"
 
 namespace insula::gateway {
 namespace {
@@ -14,21 +14,18 @@ using nlohmann::json;
 class TrainingApiTest : public testing::Test {
  protected:
   TrainingApiTest() {
-    std::string name = (fs::temp_directory_path() / "insula_api_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    std::ofstream(folder_ / "catalogue.json")
-        << R"([{"scene":"scenes/a b/1.xml","group":"training","title":"One","text":"Do.","picture":"/p/1.jpg"},
-               {"scene":"2.xml","group":"cases","title":"Two","text":"","picture":""}, {"scene":7}, "x"])";
-    std::ofstream(folder_ / "choice.json") << R"({"scene":"2.xml","person":"","state":"running","text":""})";
+    folder_.write("catalogue.json",
+                  R"([{"scene":"scenes/a b/1.xml","group":"training","title":"One","text":"Do.","picture":"/p/1.jpg"},
+               {"scene":"2.xml","group":"cases","title":"Two","text":"","picture":""}, {"scene":7}, "x"])");
+    folder_.write("choice.json", R"({"scene":"2.xml","person":"","state":"running","text":""})");
   }
-  ~TrainingApiTest() override { fs::remove_all(folder_); }
 
   TrainingApi api(const fs::path& store) {
-    return {{store, folder_ / "catalogue.json", folder_ / "choice.json"},
+    return {{store, folder_.path() / "catalogue.json", folder_.path() / "choice.json"},
             [this](const std::string& j) { chosen_.push_back(json::parse(j)); }};
   }
 
-  fs::path folder_;
+  test_files::TempFolder folder_;
   std::vector<json> chosen_;
 };
 
@@ -46,7 +43,7 @@ TEST_F(TrainingApiTest, ListsExercisesWithoutTheirPaths) {
 }
 
 TEST_F(TrainingApiTest, AddsPersonsAndSaysWhatIsWrong) {
-  auto a = api(folder_ / "training.sqlite");
+  auto a = api(folder_.path() / "training.sqlite");
   EXPECT_EQ(a.post("people", R"({"pseudonym":"P07","role":"resident","handedness":"left","year":3})").status, 200);
   const auto again = a.post("people", R"({"pseudonym":"p07"})");
   EXPECT_EQ(again.status, 400);
@@ -61,8 +58,8 @@ TEST_F(TrainingApiTest, AddsPersonsAndSaysWhatIsWrong) {
 }
 
 TEST_F(TrainingApiTest, TellsRunsOfTheOneWhoIsAskedFor) {
-  auto a = api(folder_ / "training.sqlite");
-  training::Store store(folder_ / "training.sqlite");
+  auto a = api(folder_.path() / "training.sqlite");
+  training::Store store(folder_.path() / "training.sqlite");
   training::Run run;
   run.uuid = training::new_uuid(), run.person = "Käthe 9", run.scene = "scenes/a b/1.xml", run.title = "One";
   run.mode = "practice", run.state = "done", run.began_ms = 5, run.recording = "/folder/of/mine/night.insula";
@@ -82,7 +79,7 @@ TEST_F(TrainingApiTest, TellsRunsOfTheOneWhoIsAskedFor) {
 }
 
 TEST_F(TrainingApiTest, PassesOnChoicesOfWhatThereIsOnly) {
-  auto a = api(folder_ / "training.sqlite");
+  auto a = api(folder_.path() / "training.sqlite");
   a.post("people", R"({"pseudonym":"P07"})");
   EXPECT_EQ(a.post("choose", R"({"scene":"2.xml","person":"P07"})").status, 202);
   EXPECT_EQ(a.post("choose", R"({"scene":"2.xml","person":""})").status, 202);
