@@ -14,7 +14,7 @@ constexpr Units<4> length{{{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}};
 constexpr Units<3> area{{{"m2", 1}, {"cm2", 1e-4}, {"mm2", 1e-6}}};
 constexpr Units<5> volume{{{"m3", 1}, {"l", 1e-3}, {"ml", 1e-6}, {"ul", 1e-9}, {"mm3", 1e-9}}};
 constexpr Units<4> duration{{{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}}};
-constexpr Units<3> frequency{{{"Hz", 1}, {"kHz", 1e3}, {"1/min", 1.0 / 60}}};
+constexpr Units<4> frequency{{{"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"1/min", 1.0 / 60}}};
 constexpr Units<1> rate{{{"1/s", 1}}};
 constexpr Units<3> mass{{{"kg", 1}, {"g", 1e-3}, {"mg", 1e-6}}};
 constexpr Units<2> density{{{"kg/m3", 1}, {"g/cm3", 1e3}}};

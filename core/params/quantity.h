@@ -25,7 +25,7 @@ INSULA_QUANTITY(Length, "length", "m");          // m cm mm um
 INSULA_QUANTITY(Area, "area", "m2");             // m2 cm2 mm2
 INSULA_QUANTITY(Volume, "volume", "m3");         // m3 l ml ul mm3
 INSULA_QUANTITY(Duration, "time", "s");          // s ms us min
-INSULA_QUANTITY(Frequency, "frequency", "Hz");   // Hz kHz 1/min
+INSULA_QUANTITY(Frequency, "frequency", "Hz");   // Hz kHz MHz 1/min
 INSULA_QUANTITY(Rate, "rate", "1/s");            // 1/s (Rayleigh mass damping)
 INSULA_QUANTITY(Mass, "mass", "kg");             // kg g mg
 INSULA_QUANTITY(Density, "density", "kg/m3");    // kg/m3 g/cm3

@@ -33,6 +33,7 @@ const UnitCase every_unit[] = {
     {Duration::units(), "2 min", 120},
     {Frequency::units(), "2 Hz", 2},
     {Frequency::units(), "2 kHz", 2e3},
+    {Frequency::units(), "2 MHz", 2e6},
     {Frequency::units(), "60 1/min", 1},
     {Rate::units(), "2 1/s", 2},
     {Mass::units(), "2 kg", 2},

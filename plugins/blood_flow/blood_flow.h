@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "plugins/blood_flow/dye.h"
+#include "plugins/blood_flow/lumen_piece.h"
 #include "plugins/blood_flow/vessel_graph.h"
 #include "plugins/blood_flow/vessel_state.h"
 #include "plugins/pressure/pressure.h"
 
 namespace insula {
 
-class BloodFlow final : public Constraint, public ChamberFeed, public VesselSource {
+class BloodFlow final : public Constraint, public ChamberFeed, public VesselSource, public LumenSource {
  public:
   static constexpr std::string_view kind_name = "blood_flow";
 
@@ -139,6 +140,8 @@ class BloodFlow final : public Constraint, public ChamberFeed, public VesselSour
   bool adds_rows() const override { return false; }  ///< its chambers' rows are those of the pressure
   void publish() override;
   void append_vessels(std::vector<VesselState>& out) const override;
+  void append_lumens(std::vector<LumenPiece>& out) const override;
+  std::size_t most_lumens() const override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;
   std::vector<CommandInfo> commands() const override;

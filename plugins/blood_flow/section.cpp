@@ -9,16 +9,31 @@
 
 namespace insula {
 
+Vec3 Section::place(const VecX& q, std::size_t corner) const {
+  const Corner& c = corners[corner];
+  return (1 - c.weight) * q.segment<3>(3 * c.a) + c.weight * q.segment<3>(3 * c.b);
+}
+
+Vec3 Section::centre(const VecX& q) const {
+  double perimeter = 0;
+  Vec3 sum = Vec3::Zero(), last = place(q, corners.size() - 1);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3 x = place(q, i);
+    const double side = (x - last).norm();
+    sum += 0.5 * side * (x + last);
+    perimeter += side;
+    last = x;
+  }
+  return perimeter > 0 ? Vec3(sum / perimeter) : last;
+}
+
 Lumen Section::wall(const VecX& q) const {
   Lumen out;
   if (corners.size() < 3) return out;
-  const auto place = [&](const Corner& c) -> Vec3 {
-    return (1 - c.weight) * q.segment<3>(3 * c.a) + c.weight * q.segment<3>(3 * c.b);
-  };
-  const Vec3 origin = place(corners.front());
+  const Vec3 origin = place(q, 0);
   Vec3 area = Vec3::Zero(), last = Vec3::Zero();
   for (std::size_t i = 1; i <= corners.size(); ++i) {
-    const Vec3 x = i < corners.size() ? Vec3(place(corners[i]) - origin) : Vec3(Vec3::Zero());
+    const Vec3 x = i < corners.size() ? Vec3(place(q, i) - origin) : Vec3(Vec3::Zero());
     area += last.cross(x);
     out.perimeter += (x - last).norm();
     last = x;

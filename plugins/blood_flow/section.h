@@ -20,11 +20,14 @@ struct Section {
     double weight;  ///< of b
   };
   std::vector<Corner> corners;
+  Vec3 place(const VecX& q, std::size_t corner) const;
   /// Area and perimeter of the polygon of the wall's middle surface.
   Lumen wall(const VecX& q) const;
   /// The same for the space inside the wall: a strip of half its thickness is subtracted along the perimeter. Two flat
   /// walls that touch leave nothing. A circle of radius r leaves a circle of r - thickness / 2.
   Lumen lumen(const VecX& q, double thickness) const;
+  /// Middle of the polygon's perimeter. There must be corners.
+  Vec3 centre(const VecX& q) const;
 };
 
 /// The loop around `at` in which the plane cuts the triangles, or the smallest one if there are several. Empty if there

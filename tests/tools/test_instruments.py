@@ -282,7 +282,8 @@ class Urdf(unittest.TestCase):
     def test_tool_facts(self):
         for name in NAMES:
             tool = Instrument(name).tool
-            self.assertIn(tool["tip"]["kind"], ("suction", "dissector", "retractor", "forceps", "scissors"))
+            kinds = ("suction", "dissector", "retractor", "forceps", "scissors", "micro_doppler")
+            self.assertIn(tool["tip"]["kind"], kinds)
             self.assertTrue(90.0 < tool["length_mm"] < 250.0)
             if "blade" in tool:
                 edge = tool["blade"]["edge"]

@@ -144,11 +144,13 @@ std::string field_part(const SceneFacts& f) {
           .c_str());
   s += tool(f, "dissector", "stylus", "right", "dissector",
             "home=\"92 26 1 mm\" shaft=\"0.93 0.35 -0.11\" flat=\"-0.34 0.93 0.12\" coupling=\"250 N/m\"");
+  s += tool(f, "micro_doppler", "doppler", "right", "micro_doppler",
+            "home=\"92 26 1 mm\" shaft=\"0.93 0.35 -0.11\" flat=\"-0.34 0.93 0.12\" coupling=\"250 N/m\"");
   s += "\n" + weak_spot(f, "0.93 0.25 0.27", 16, 20);
   s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" "
        "tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"
-       "  <contact id=\"tools\" between=\"artery frontal temporal insula window suction probe applier stylus\" "
-       "friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\" max_correction=\"0.2 mm\"/>\n";
+       "  <contact id=\"tools\" between=\"artery frontal temporal insula window suction probe applier stylus "
+       "doppler\" friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\" max_correction=\"0.2 mm\"/>\n";
   s += fmt::format(
       "  <contact id=\"blades\" between=\"artery {}\" friction=\"0.35\" contact_geometry=\"vertices\" patch=\"2.5 mm\" "
       "max_contacts=\"60\" alarm=\"0.12 mm\" max_correction=\"0.1 mm\"/>\n",

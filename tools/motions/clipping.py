@@ -13,6 +13,7 @@
 3_clipping_branch_in_window  a fenestrated clip from the side: the inferior branch passes through its window
 3_clipping_slipping     the applier pulls at the shut clip, which slips off the neck
 3_clipping_perforator   blades turned across the superior branch: they close on the perforator behind it too
+3_clipping_listening     the probe on parent, branches and dome; the clip of steady; and the probe on each again
 4_rupture_steady        the dome ruptures; suction; temporary clip on the parent artery; neck clipped; temporary clip
                         removed
 4_rupture_late          the same rupture, but nobody clips
@@ -60,6 +61,9 @@ PROXIMAL = dict(name="parent", share=0.45, past=-2.4, square=0.5)
 # Where its grip lies when the applier has left: the temporal lobe comes back and turns the clip. The hand that takes it
 # must be nearer to this grip than to that of the clip on the neck.
 PROXIMAL_GRIP = (53.7, 21.4, -14.0)
+# Where the Doppler probe listens: share of a centreline, and how far from its axis the tip is held, mm. It comes along
+# the view, since retractors and bone are in other ways.
+LISTENED = {"parent": (0.8, 3.4), "superior": (0.5, 2.4), "inferior": (0.62, 2.6), "sac": (0.65, 4.4)}
 OUT_OF_FIELD = 32.0  # mm along the applier's shaft
 VIEW = (0.93, 0.25, 0.27)  # towards the surgeon
 
@@ -255,6 +259,23 @@ class Field:
         return clip.applier_pose(middle, turned(inward, axis, angle), turned(closing, axis, angle))
 
 
+def listen(script, field):
+    """Takes the Doppler probe and holds it for two heartbeats on each vessel in turn."""
+    shaft = field.view
+    x = across((-0.34, 0.93, 0.12), shaft)
+    q = quaternion(x, cross(shaft, x), shaft)
+    hand = script.right
+    script.command(round(hand.t + 0.2, 3), "exchange", "right doppler")
+    for name, (share, away) in LISTENED.items():
+        tip = add(field.on_line(name, share)[0], shaft, away)
+        outside = add(tip, shaft, OUT_OF_FIELD)
+        hand.key(0.6, outside, q)
+        hand.key(1.0, add(tip, shaft, 3), q)
+        hand.key(0.6, tip, q)
+        hand.key(1.9, tip, q)
+        hand.key(0.8, outside, q)
+
+
 def suction_poses(field):
     """The suction tube beside the field, and dipped into it below the dome."""
     shaft = unit([0.85, -0.35, 0.39])
@@ -276,6 +297,20 @@ def clips(path, placed, wait):
             script.right.key(0.3, steady_outside(script), last_q(script))
         place(script.right)
     script.right.key(wait, steady_outside(script), last_q(script))
+    script.write(path)
+
+
+def listened(path, field):
+    """The probe before the clip and after it."""
+    script = Script()
+    listen(script, field)
+    script.command(round(script.right.t + 0.2, 3), "exchange", "right applier")
+    script.command(round(script.right.t + 0.4, 3), "ask", "applier load angled")
+    script.right.key(0.8, steady_outside(script), last_q(script))
+    field.clip_neck(script.right)
+    script.right.key(1, steady_outside(script), last_q(script))
+    listen(script, field)
+    script.right.key(1, steady_outside(script), last_q(script))
     script.write(path)
 
 
@@ -304,6 +339,7 @@ def exercise_3(folder):
     one_clip(folder / "3_clipping_slipping.csv", "angled", field.pull_shut_clip, 2)
     beside = field.neck(Clip("angled"), -0.9, 2.2, -45, 2, 1.5)
     one_clip(folder / "3_clipping_perforator.csv", "angled", at(beside), 4)
+    listened(folder / "3_clipping_listening.csv", field)
     cases = folder.parent / "cases"
     for case in NECK:
         if case != CASE and cases.is_dir():

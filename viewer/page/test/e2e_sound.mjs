@@ -22,18 +22,40 @@ const option = (name, otherwise) => {
 };
 const pause = (ms) => new Promise((r) => setTimeout(r, ms));
 
+/** What vessels sound like when they part, and what a probe hears in them. */
+function vesselsAndDoppler(m, placed) {
+  assert.ok(m.vein.centroid_hz < 1000 && m.artery.centroid_hz > 2000);
+  check(
+    `a vein parts at ${m.vein.centroid_hz.toFixed(0)} Hz, an artery at ${m.artery.centroid_hz.toFixed(0)} Hz, ` +
+      `a torn strand at ${m.torn.centroid_hz.toFixed(0)} Hz`,
+  );
+  const shifts = { doppler_slow: 500, doppler_fast: 3896 };
+  for (const [name, hz] of Object.entries(shifts))
+    assert.ok(Math.abs(m[name].centroid_hz / hz - 1) < 0.15, `${name}: ${m[name].centroid_hz} Hz, not about ${hz}`);
+  const deeper = 20 * Math.log10(m.doppler_deep.rms / m.doppler_fast.rms);
+  assert.ok(Math.abs(deeper + 6) < 0.5, `3 mm deeper is ${deeper} dB`);
+  assert.ok(placed.nearer[1] > 2 * placed.nearer[0] && placed.away[0] > 2 * placed.away[1]);
+  assert.ok(Math.abs(placed.both[1] / placed.both[0] - 1) < 0.02);
+  check(
+    `a Doppler probe sounds about its shift: ${m.doppler_slow.centroid_hz.toFixed(0)} Hz at 500 Hz, ` +
+      `${m.doppler_fast.centroid_hz.toFixed(0)} Hz at 3896 Hz; ${deeper.toFixed(1)} dB 3 mm deeper; ` +
+      'each way has its side',
+  );
+}
+
 /** Voices, one by one. */
 async function renderVoices(browser) {
   const page = await browser.newPage();
   await page.goto('about:blank');
   await page.addScriptTag({ content: await renderingScript() });
   const m = await page.evaluate(async () => {
-    const out = {};
+    const out = { placed: {} };
     for (const [name, play] of Object.entries(window.rendering.cases)) out[name] = await play();
+    for (const [name, play] of Object.entries(window.rendering.placed)) out.placed[name] = await play();
     return out;
   });
   await page.close();
-  const { group_off: off, everything, ...single } = m;
+  const { group_off: off, everything, placed, ...single } = m;
   for (const [name, v] of Object.entries(single)) {
     assert.ok(v.peak > 0.01 && v.peak < 0.4, `${name}: peak ${v.peak}`);
     assert.ok(v.after < 1e-4, `${name}: ${v.after} is left after its end`);
@@ -50,6 +72,7 @@ async function renderVoices(browser) {
     `a cut strand is a snip at ${m.cut.centroid_hz.toFixed(0)} Hz, a torn one rips at ` +
       `${m.torn.centroid_hz.toFixed(0)} Hz and is ${louder.toFixed(1)} dB louder`,
   );
+  vesselsAndDoppler(m, placed);
   const pitch = (name, hz) => {
     assert.ok(Math.abs(m[name].strongest_hz / hz - 1) < 0.01, `${name}: ${m[name].strongest_hz} Hz, not ${hz}`);
     return m[name].strongest_hz.toFixed(0);
@@ -195,7 +218,11 @@ async function settings(page, mock) {
     pressed: [...document.querySelectorAll('.sound [data-group]')].map((b) => b.getAttribute('aria-pressed')),
     labels: [...document.querySelectorAll('.sound input')].map((b) => b.getAttribute('aria-label')),
   }));
-  assert.deepEqual(seen, { volume: '0.5', pressed: ['true', 'false', 'true'], labels: ['volume of the sound'] });
+  assert.deepEqual(seen, {
+    volume: '0.5',
+    pressed: ['true', 'false', 'true', 'true'],
+    labels: ['volume of the sound'],
+  });
   await page.keyboard.press('m');
   await page.waitForFunction(() => window.__insula.sound.running && window.__tap.ready, null, patience);
   assert.equal(await textOf(page), '♪ Sound on');

@@ -21,6 +21,7 @@ export class FakeAudio {
   readonly createGain = () => this.node();
   readonly createBiquadFilter = () => this.node();
   readonly createWaveShaper = () => this.node();
+  readonly createStereoPanner = () => this.node();
   readonly createOscillator = () => this.source();
   readonly createBufferSource = () => this.source();
   readonly createPeriodicWave = () => ({});
@@ -31,7 +32,7 @@ export class FakeAudio {
   }
 
   private node() {
-    const made: Record<string, unknown> = { gain: param(), frequency: param(), Q: param() };
+    const made: Record<string, unknown> = { gain: param(), frequency: param(), Q: param(), pan: param() };
     made.connect = (next: unknown) => next;
     return made;
   }

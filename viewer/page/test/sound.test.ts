@@ -22,6 +22,8 @@ describe('the table of sounds', () => {
   it('tells cutting from tearing, and clicks of clips from each other', () => {
     expect(soundOf('strand_cut')).toEqual({ strand: 'cut' });
     expect(soundOf('strand_torn')).toEqual({ strand: 'torn' });
+    expect(soundOf('vein_parted')?.strand).toBe('vein');
+    expect(soundOf('perforator_torn')?.strand).toBe('artery');
     const clips = Object.values(eventSounds).flatMap((s) => (s.clip ? [s.clip] : []));
     expect(new Set(clips).size).toBe(4);
   });
@@ -65,7 +67,11 @@ describe('settings of the sound', () => {
     expect(readSettings(store(null)).on).toBe(false);
     let kept = '';
     const memory = { getItem: () => kept, setItem: (_: string, v: string) => void (kept = v) };
-    const chosen = { on: true, volume: 0.3, groups: { monitor: false, instruments: true, alarms: false } };
+    const chosen = {
+      on: true,
+      volume: 0.3,
+      groups: { monitor: false, instruments: true, doppler: false, alarms: false },
+    };
     writeSettings(memory, chosen);
     expect(readSettings(memory)).toEqual(chosen);
   });

@@ -5,6 +5,7 @@ import { AlarmVoice } from '../src/sound/voices/alarm';
 import { BleedingVoice } from '../src/sound/voices/bleeding';
 import { click } from '../src/sound/voices/clip';
 import { hit } from '../src/sound/voices/contact';
+import { DopplerVoice } from '../src/sound/voices/doppler';
 import { drip } from '../src/sound/voices/drop';
 import { beep } from '../src/sound/voices/heart';
 import { part } from '../src/sound/voices/strand';
@@ -13,7 +14,7 @@ import { centroid, lastLoud, onsets, peak, rms, spectrum, strongest } from './so
 
 const rate = 48000;
 const mmHg = 133.322;
-const on = { monitor: true, instruments: true, alarms: true };
+const on = { monitor: true, instruments: true, doppler: true, alarms: true };
 
 async function render(seconds, play, groups = on) {
   const context = new OfflineAudioContext(1, seconds * rate, rate);
@@ -54,6 +55,27 @@ const suck = (drawn) => async () => {
   return measure(x, at + 0.1, 0.35);
 };
 
+const insonate =
+  (shiftHz, depthM = 0.002) =>
+  async () => {
+    const flow = { shiftHz, depthM, mixed: false };
+    const x = await render(2, (place) => new DopplerVoice(place('doppler')).play(flow, at));
+    return measure(x, at + 0.1, 0.35);
+  };
+
+/** Of the left and the right side, how loud it is. */
+const sides = (shiftHz, mixed) => async () => {
+  const context = new OfflineAudioContext(2, rate, rate);
+  const mixer = new Mixer(context);
+  mixer.set(1, on);
+  new DopplerVoice(mixer.place('doppler')).play({ shiftHz, depthM: 0, mixed }, at);
+  const both = await context.startRendering();
+  return [0, 1].map((side) => rms(both.getChannelData(side).subarray(0.3 * rate, 0.6 * rate)));
+};
+
+/** What is no single voice. */
+export const placed = { away: sides(-2000, false), nearer: sides(2000, false), both: sides(2000, true) };
+
 const strike = (group, windowS, play) => async () =>
   measure(await render(1.5, (place) => play(place(group))), at, windowS);
 
@@ -65,6 +87,11 @@ const alarm = (priority) => async () => {
 export const cases = {
   cut: strike('instruments', 0.25, (p) => part(p, at, 'cut', 0)),
   torn: strike('instruments', 0.25, (p) => part(p, at, 'torn', 0)),
+  vein: strike('instruments', 0.4, (p) => part(p, at, 'vein', 0)),
+  artery: strike('instruments', 0.4, (p) => part(p, at, 'artery', 0)),
+  doppler_slow: insonate(500),
+  doppler_fast: insonate(-3896),
+  doppler_deep: insonate(-3896, 0.005),
   shut: strike('instruments', 0.15, (p) => click(p, at, 'shut')),
   released: strike('instruments', 0.15, (p) => click(p, at, 'released')),
   taken: strike('instruments', 0.15, (p) => click(p, at, 'taken')),
@@ -106,7 +133,7 @@ export const cases = {
         beep(place('monitor'), at, null);
         part(place('instruments'), at, 'torn', 0);
       },
-      { monitor: false, instruments: false, alarms: true },
+      { monitor: false, instruments: false, doppler: true, alarms: true },
     );
     return measure(x, at, 0.2);
   },

@@ -9,6 +9,7 @@ import { AlarmVoice } from './voices/alarm';
 import { BleedingVoice } from './voices/bleeding';
 import { click } from './voices/clip';
 import { hit, type Partner } from './voices/contact';
+import { DopplerVoice, type Flow, timbreOf } from './voices/doppler';
 import { beep } from './voices/heart';
 import { part } from './voices/strand';
 import { type Drawn, SuctionVoice } from './voices/suction';
@@ -19,6 +20,7 @@ export class Desk {
   private readonly suction: SuctionVoice;
   private readonly bleeding: BleedingVoice;
   private readonly alarm: AlarmVoice;
+  private readonly doppler: DopplerVoice;
 
   constructor(
     private readonly context: AudioContext,
@@ -30,6 +32,7 @@ export class Desk {
     this.suction = new SuctionVoice(this.place('suction'));
     this.bleeding = new BleedingVoice(this.place('drop'));
     this.alarm = new AlarmVoice(this.place('alarm'));
+    this.doppler = new DopplerVoice(this.place('doppler'));
   }
 
   set({ volume, groups }: SoundSettings): void {
@@ -67,6 +70,14 @@ export class Desk {
     for (let k = 0; k < bubbles; k++) this.strike('suction', arrivedMs, (at) => this.suction.bubble(at, Math.random()));
   }
 
+  /** The blood that a Doppler probe hears; null: none. */
+  insonate(flow: Flow | null, arrivedMs: number): void {
+    const now = this.context.currentTime;
+    if (!flow || !timbreOf(flow)) this.doppler.stop(now);
+    else if (this.doppler.on) this.doppler.play(flow, now);
+    else this.strike('doppler', arrivedMs, (at) => this.doppler.play(flow, at));
+  }
+
   /** Its length, s; 0: it is not heard. */
   warn(priority: Priority, arrivedMs: number): number {
     let length = 0;
@@ -80,6 +91,7 @@ export class Desk {
     this.suction.stop(now);
     this.bleeding.stop(now);
     this.alarm.stop(now);
+    this.doppler.stop(now);
   }
 
   private place(voice: Voice): Place {

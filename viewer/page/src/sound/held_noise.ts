@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A lasting noise with a timbre that may change: white noise through a band-pass filter, made uneven by slow noise,
+// A lasting noise with a timbre that may change: white noise through a filter, a band-pass unless another is wanted,
+// made uneven by slow noise,
 //
-//   y = level (1 + depth n_slow(t)) * bandpass(n_white; hz, q).
+//   y = level (1 + depth n_slow(t)) * filter(n_white; hz, q).
 //
 // It lives on a lease: each call of `play` says that it goes on, and without one it falls silent by itself. So nothing
 // goes on roaring when the engine stops or the connection breaks.
@@ -10,6 +11,7 @@ import type { Place } from './mixer';
 
 export interface Timbre {
   hz: number;
+  /** As Web Audio has it: of a low-pass filter in dB. */
   q: number;
   level: number;
   /** 0: even; 1: as uneven as it can be. */
@@ -27,9 +29,15 @@ const heard = 0.08;
 /** After that it is off: fades are over. */
 const fadeS = 0.3;
 
+/** The filter, and how often one follows the other. */
+export interface Filter {
+  type: BiquadFilterType;
+  stages: number;
+}
+
 interface Running {
   sources: AudioBufferSourceNode[];
-  filter: BiquadFilterNode;
+  filters: BiquadFilterNode[];
   depth: GainNode;
   level: GainNode;
 }
@@ -41,7 +49,10 @@ export class HeldNoise {
   private renewAt = 0;
   private running: Running | null = null;
 
-  constructor(private readonly place: Place) {}
+  constructor(
+    private readonly place: Place,
+    private readonly filter: Filter = { type: 'bandpass', stages: 1 },
+  ) {}
 
   /** Begins it, changes it, or lets it go on. */
   play(timbre: Timbre, at: number): void {
@@ -51,9 +62,11 @@ export class HeldNoise {
     this.playing = timbre;
     this.renewAt = at + renewS;
     const { hz, q, level, depth } = timbre;
-    const { filter, depth: uneven, level: loudness } = (this.running ??= this.start(hz, q, at));
-    filter.frequency.setTargetAtTime(hz, at, glideS);
-    filter.Q.setTargetAtTime(q, at, glideS);
+    const { filters, depth: uneven, level: loudness } = (this.running ??= this.start(hz, q, at));
+    for (const f of filters) {
+      f.frequency.setTargetAtTime(hz, at, glideS);
+      f.Q.setTargetAtTime(q, at, glideS);
+    }
     uneven.gain.setTargetAtTime(depth, at, glideS);
     loudness.gain.cancelScheduledValues(at);
     loudness.gain.setTargetAtTime(level, at, glideS);
@@ -79,18 +92,22 @@ export class HeldNoise {
     const wander = context.createBufferSource();
     wander.buffer = noise.slow;
     wander.loop = true;
-    const filter = context.createBiquadFilter();
-    filter.type = 'bandpass';
-    filter.frequency.value = hz;
-    filter.Q.value = q;
+    const filters = Array.from({ length: this.filter.stages }, () => {
+      const filter = context.createBiquadFilter();
+      filter.type = this.filter.type;
+      filter.frequency.value = hz;
+      filter.Q.value = q;
+      return filter;
+    });
     const depth = context.createGain();
     const unevenness = context.createGain();
     const level = context.createGain();
     level.gain.value = depth.gain.value = 0;
     wander.connect(depth).connect(unevenness.gain);
-    source.connect(filter).connect(unevenness).connect(level).connect(out);
+    const filtered = filters.reduce<AudioNode>((from, to) => from.connect(to), source);
+    filtered.connect(unevenness).connect(level).connect(out);
     source.start(at);
     wander.start(at);
-    return { sources: [source, wander], filter, depth, level };
+    return { sources: [source, wander], filters, depth, level };
   }
 }

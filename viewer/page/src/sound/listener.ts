@@ -12,8 +12,10 @@ import type { Desk } from './desk';
 import { Impacts } from './impacts';
 import { Poisson } from './poisson';
 import { Surroundings } from './surroundings';
-import { channelAlarm, clockAlarm, hasLimits, inflowOf, pressureOfPulse, type Priority, soundOf } from './table';
+import { channelAlarm, clockAlarm, dopplers, hasLimits, inflowOf, pressureOfPulse } from './table';
+import { type DopplerChannels, type Priority, soundOf } from './table';
 import { dropsPerSecond } from './voices/bleeding';
+import type { Flow } from './voices/doppler';
 import { bubbleRate } from './voices/suction';
 
 /** Of simulated time between two frames; more was lost or skipped, s. */
@@ -28,6 +30,7 @@ export class Listener {
   private readonly pressure: ChannelData | null;
   private readonly inflows: string[];
   private readonly limited: ChannelData[];
+  private readonly probes: DopplerChannels[];
   private readonly beats = new Beats();
   private readonly alarms = new Alarms();
   private readonly drops = new Poisson(Math.random);
@@ -44,6 +47,7 @@ export class Listener {
     const inflows = bundle.drawables.map((d) => inflowOf(d.declared, bundle.materials));
     this.inflows = [...new Set(inflows)].filter((id) => id !== '');
     this.limited = bundle.channels.filter(hasLimits);
+    this.probes = dopplers(bundle.channels);
     this.impacts = new Impacts(bundle);
     this.surroundings = new Surroundings(bundle);
   }
@@ -84,11 +88,23 @@ export class Listener {
     if (beat) desk.beat(beat.pressurePa, arrivedMs);
     const rate = this.inflows.reduce((sum, id) => sum + Math.max(0, this.channels.value(id) ?? 0), 0);
     desk.bleed(rate, this.drops.count(dropsPerSecond(rate), pastS), arrivedMs);
+    desk.insonate(this.insonated(), arrivedMs);
     const present = new Map(this.late);
     for (const c of this.limited)
       if (level(c, this.channels.value(c)) === 'too_much') present.set(`channel ${c.id}`, channelAlarm);
     const due = this.alarms.watch(present, timeS);
     if (due) this.warn(due, timeS, desk, arrivedMs);
+  }
+
+  /** The blood under the probe that is in a hand; of two, that with the larger shift. */
+  private insonated(): Flow | null {
+    let most: Flow | null = null;
+    for (const { shift, depth, mixed } of this.probes) {
+      const shiftHz = this.channels.value(shift) ?? 0;
+      if (Math.abs(shiftHz) <= Math.abs(most?.shiftHz ?? 0)) continue;
+      most = { shiftHz, depthM: this.channels.value(depth), mixed: (this.channels.value(mixed) ?? 0) > 0 };
+    }
+    return most;
   }
 
   private warn(priority: Priority, timeS: number, desk: Desk, arrivedMs: number): void {

@@ -5,16 +5,17 @@ import type { ChannelData, DrawableData, MaterialData } from '../step_data/decla
 import { text } from '../languages/text';
 
 /** What can be switched on and off by itself. */
-export const groups = ['monitor', 'instruments', 'alarms'] as const;
+export const groups = ['monitor', 'instruments', 'doppler', 'alarms'] as const;
 export type Group = (typeof groups)[number];
 
 export const groupNames: Record<Group, { short: string; whole: string }> = {
   monitor: { short: text('Monitor'), whole: text('sounds of the patient monitor') },
   instruments: { short: text('Instruments'), whole: text('sounds of instruments and field') },
+  doppler: { short: text('Doppler'), whole: text('sounds of the Doppler probe') },
   alarms: { short: text('Alarms'), whole: text('sounds of alarms') },
 };
 
-export type Voice = 'heart' | 'clip' | 'strand' | 'contact' | 'drop' | 'suction' | 'alarm';
+export type Voice = 'heart' | 'clip' | 'strand' | 'contact' | 'drop' | 'suction' | 'doppler' | 'alarm';
 
 /** A voice's group, and how many of it may begin within a stretch of time. */
 export const voices: Record<Voice, { group: Group; most: number; withinS: number }> = {
@@ -24,10 +25,12 @@ export const voices: Record<Voice, { group: Group; most: number; withinS: number
   contact: { group: 'instruments', most: 4, withinS: 0.15 },
   drop: { group: 'instruments', most: 6, withinS: 0.25 },
   suction: { group: 'instruments', most: 8, withinS: 0.25 },
+  doppler: { group: 'doppler', most: 4, withinS: 0.25 },
   alarm: { group: 'alarms', most: 2, withinS: 1 },
 };
 
-export type Parting = 'cut' | 'torn';
+/** What parts: a strand by an edge or by a pull, or a vessel with its blood. */
+export type Parting = 'cut' | 'torn' | 'vein' | 'artery';
 export type ClipSound = 'shut' | 'released' | 'taken' | 'loaded';
 /** As IEC 60601-1-8 has them. */
 export type Priority = 'low' | 'medium' | 'high';
@@ -44,8 +47,8 @@ export const eventSounds: Readonly<Record<string, EventSound>> = {
   strand_torn: { strand: 'torn' },
   membrane_cut: { strand: 'cut' },
   membrane_torn: { strand: 'torn' },
-  vein_parted: { strand: 'torn', alarm: 'medium' },
-  perforator_torn: { strand: 'torn', alarm: 'high' },
+  vein_parted: { strand: 'vein', alarm: 'medium' },
+  perforator_torn: { strand: 'artery', alarm: 'high' },
   perforator_shut: { alarm: 'medium' },
   clip_shut: { clip: 'shut' },
   clip_released: { clip: 'released' },
@@ -85,4 +88,27 @@ export function pressureOfPulse(channels: readonly ChannelData[], pulseChannel: 
   const pulse = channels.find((c) => c.id === pulseChannel);
   const vital = (c: ChannelData) => c.component === pulse?.component && c.shown === 'vital' && c.unit === 'Pa';
   return channels.find(vital) ?? null;
+}
+
+/** What a Doppler probe hears, by the channels that its component declares. */
+export interface DopplerChannels {
+  /** Hz, positive towards the probe. */
+  shift: ChannelData;
+  depth: ChannelData | null;
+  /** Not 0: the blood moves both ways. */
+  mixed: ChannelData | null;
+}
+
+/** Every probe of a scene. */
+export function dopplers(channels: readonly ChannelData[]): DopplerChannels[] {
+  const named = (c: ChannelData, name: string) => c.id === `${c.component}.${name}`;
+  const of = (component: string, name: string) =>
+    channels.find((c) => c.component === component && named(c, name)) ?? null;
+  return channels
+    .filter((c) => c.unit === 'Hz' && named(c, 'doppler_shift'))
+    .map((shift) => ({
+      shift,
+      depth: of(shift.component, 'doppler_depth'),
+      mixed: of(shift.component, 'doppler_mixed'),
+    }));
 }
