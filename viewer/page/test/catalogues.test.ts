@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every text of the page and of the shipped exercises has a translation in every catalogue, and no text goes past them.
-import { readFileSync } from 'node:fs';
+import { execFileSync } from 'node:child_process';
+import { existsSync, readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 import { IntlMessageFormat } from 'intl-messageformat';
 import { describe, expect, it } from 'vitest';
 
@@ -75,4 +77,11 @@ describe('sources', () => {
       expect(html, page).not.toMatch(/aria-label|placeholder|title=/);
     }
   });
+});
+
+const program = fileURLToPath(new URL('../../../build/release/bin/insula', import.meta.url));
+const script = fileURLToPath(new URL('../scripts/texts.mjs', import.meta.url));
+
+it.skipIf(!existsSync(program))('the kept texts of exercises are what the program says', { timeout: 600_000 }, () => {
+  execFileSync(process.execPath, [script, '--exercises', program, '--check'], { stdio: 'pipe' });
 });

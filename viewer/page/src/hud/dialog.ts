@@ -85,7 +85,7 @@ export class Dialog {
   }
 
   private keepFocus(e: KeyboardEvent): void {
-    const stops = [...this.root.querySelectorAll<HTMLElement>('button:enabled, a[href]')];
+    const stops = [...this.root.querySelectorAll<HTMLElement>('[tabindex="0"], button:enabled, a[href], summary')];
     const first = stops[0];
     const last = stops[stops.length - 1];
     if (!first || !last) return;
