@@ -205,6 +205,15 @@ class Sending(unittest.TestCase):
             self.assertIn("sent 2 runs", self.send(lrs))
             self.assertEqual({s["actor"]["account"]["name"] for s in lrs.kept.values()}, {"P08"})
 
+    def test_an_export_says_what_it_needs(self):
+        self.fill(2)
+        self.assertIn("--xapi FILE", self.people("export", status=2))
+        self.people("export", "--xapi", str(self.data / "no folder/file.json"), status=1)
+        file = self.data / "guests.json"
+        self.people("forget", "P07", "--folder", str(self.data))
+        self.people("export", "--xapi", str(file))
+        self.assertEqual(json.loads(file.read_text()), [])
+
     def test_the_home_page_is_kept(self):
         self.fill(1)
         self.people("send", "--home-page", "training.example.org", status=2)
