@@ -2,7 +2,10 @@
 #include <fmt/chrono.h>
 #include <fmt/ostream.h>
 
+#include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/base/input_error.h"
 #include "core/base/text.h"
@@ -10,7 +13,9 @@
 #include "engine/command_line/play.h"
 #include "engine/command_line/sessions.h"
 #include "engine/reports/table_file.h"
+#include "engine/reports/xapi_origin.h"
 #include "training/store/data_folder.h"
+#include "training/store/outbox.h"
 #include "training/store/store.h"
 
 namespace insula {
@@ -60,15 +65,31 @@ void export_runs(const Store& store, const PeopleOptions& o, std::ostream& out) 
   TableFile metrics(o.output, "metrics", o.format, {"run", "metric", "hand", "value", "unit", "better", "text"});
   TableFile faults(o.output, "faults", o.format, {"run", "fault", "count", "text"});
   for (const std::string& person : whose(store, o.pseudonym))
-    for (const Run& summary : store.runs(person, Store::all_runs)) {
-      const auto r = store.run(summary.uuid);
-      if (!r) continue;  // forgotten in between
-      runs.row({r->uuid, r->person, r->scene, r->title, r->mode, time_text(r->began_ms), r->duration_s, r->state,
-                r->goals, r->goals_done, r->faults, r->step_rate_hz, r->report, r->recording});
-      for (const auto& m : r->metrics) metrics.row({r->uuid, m.id, m.hand, m.value, m.unit, m.better, m.text});
-      for (const auto& f : r->fault_counts) faults.row({r->uuid, f.id, f.count, f.text});
+    for (const Run& r : store.full_runs(person)) {
+      runs.row({r.uuid, r.person, r.scene, r.title, r.mode, time_text(r.began_ms), r.duration_s, r.state, r.goals,
+                r.goals_done, r.faults, r.step_rate_hz, r.report, r.recording});
+      for (const auto& m : r.metrics) metrics.row({r.uuid, m.id, m.hand, m.value, m.unit, m.better, m.text});
+      for (const auto& f : r.fault_counts) faults.row({r.uuid, f.id, f.count, f.text});
     }
   for (TableFile* t : {&runs, &metrics, &faults}) fmt::print(out, "{}\n", t->close().string());
+}
+
+/// A JSON list of the statements, in order of time for each person. It is written piece by piece.
+void export_statements(const Store& store, const PeopleOptions& o, std::ostream& out) {
+  const xapi::Origin origin = xapi_origin(training::Outbox(store));
+  std::ofstream file(o.xapi, std::ios::binary);
+  bool first = true;
+  for (const std::string& person : whose(store, o.pseudonym)) {
+    auto runs = store.full_runs(person);
+    std::reverse(runs.begin(), runs.end());
+    for (const Run& run : runs)
+      for (const Json& s : xapi::statements_of(run, origin))
+        file << (std::exchange(first, false) ? "[\n" : ",\n") << s.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+  file << (first ? "[]\n" : "\n]\n");
+  file.close();
+  if (!file) throw InputError(fmt::format("{}: it cannot be written", o.xapi.string()));
+  fmt::print(out, "{}\n", fs::absolute(o.xapi).string());
 }
 
 }  // namespace
@@ -119,6 +140,12 @@ int cmd_people_export(const CommandContext& context, const PeopleOptions& o) {
     fmt::print(context.err, "error: nobody has the pseudonym {}\n", in_quotes(o.pseudonym));
     return 2;
   }
+  if (o.output.empty() && o.xapi.empty()) {
+    fmt::print(context.err, "error: say where to write: -o FOLDER for tables, --xapi FILE for statements\n");
+    return 2;
+  }
+  if (!o.xapi.empty()) export_statements(store, o, context.out);
+  if (o.output.empty()) return 0;
   fs::create_directories(o.output);
   export_persons(store, o, context.out);
   export_runs(store, o, context.out);

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <ostream>
 
+#include "core/base/input_error.h"
 #include "core/bus/bus.h"
 #include "core/bus/lcm_bus.h"
 #include "core/scene/loader.h"
@@ -25,6 +26,7 @@
 #include "engine/live/session_lock.h"
 #include "engine/live/supervisor.h"
 #include "training/store/data_folder.h"
+#include "training/xapi/http_record_store.h"
 
 namespace fs = std::filesystem;
 
@@ -135,6 +137,19 @@ std::vector<std::string> on_standby(std::vector<std::string> engine) {
   return engine;
 }
 
+/// What persons do in this session can be sent; else it says why not.
+bool sender_ok(const CommandContext& context, const PlayOptions& options) {
+  if (options.lrs.empty()) return true;
+  try {
+    if (options.store.empty()) throw InputError("--lrs: a session without reports keeps no runs to be sent");
+    const xapi::HttpRecordStore checked(options.lrs, xapi::read_login(options.lrs_login));
+  } catch (const InputError& e) {
+    context.err << "error: " << e.what() << '\n';
+    return false;
+  }
+  return true;
+}
+
 /// Writes what exercises there are. Without a folder to write to, pages show the running one only.
 StartPageFiles start_page_files(const PlayOptions& options, const fs::path& bundles) {
   if (bundles.empty() || options.view) return {};
@@ -166,7 +181,7 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
   options.start_page = !options.view && options.scene.empty();
   if (options.scene.empty()) options.scene = default_scene();
   BusCheck bus;
-  if (!scene_ok(context, options)) return 2;
+  if (!scene_ok(context, options) || !sender_ok(context, options)) return 2;
   SessionLock lock(runtime_folder(), lcm_url_from_environment());
   if (!bus.free(context, lock)) return 1;
   const fs::path program = own_program(), folder = program.parent_path();
@@ -206,6 +221,7 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
   supervisor.add(gateway_child(options, folder, files, {serving, [&](std::string_view json) { choice.ask(json); }}));
   if (!options.view) supervisor.add(haptic_child(options, folder));
   supervisor.add(engine);
+  if (!options.lrs.empty()) supervisor.add(sender_child(options, program));
   return supervisor.run();
 }
 

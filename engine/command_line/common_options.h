@@ -57,6 +57,17 @@ inline void add_data(CLI::App& command, std::filesystem::path& folder) {
                      "platform's folder for it)");
 }
 
+/// login_name: of the option for the file with the password.
+inline void add_record_store(CLI::App& command, std::string& lrs, std::filesystem::path& login,
+                             const std::string& login_name) {
+  command.add_option("--lrs", lrs, "address of the learning record store that is told what persons do");
+  command
+      .add_option(login_name, login,
+                  "file with its NAME:PASSWORD, which nobody else may read (default: INSULA_LRS_USER and "
+                  "INSULA_LRS_PASSWORD of the environment)")
+      ->needs("--lrs");
+}
+
 /// choice: "auto" is allowed.
 inline void add_rate(CLI::App& command, std::string& rate, bool choice) {
   const std::string doc = choice ? "steps a second of the engine, or auto: the highest that this machine keeps "

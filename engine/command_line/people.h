@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The commands for persons and what they have done: people add, list, progress, export, forget,
-// backup.
+// The commands for persons and what they have done: people add, list, progress, export, send,
+// forget, backup.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -21,15 +21,24 @@ struct PeopleOptions {
   std::string format = "csv";                  ///< export: "csv" or "json"
   std::vector<std::filesystem::path> folders;  ///< forget: of recordings and reports; empty: those of play
   bool json = false;                           ///< list, progress
+  std::filesystem::path xapi;                  ///< export: file for statements; empty: none
+  std::string lrs;                             ///< send: address of the learning record store; empty: nothing is sent
+  std::filesystem::path login;                 ///< send: file with NAME:PASSWORD; empty: of the environment
+  std::string home_page;                       ///< send: of this installation; empty: as it is
+  bool watch = false, queue_all = false;       ///< send
 };
 
 /// Status 0; 2 if the pseudonym is in use or a field is wrong.
 int cmd_people_add(const CommandContext& context, const PeopleOptions& options);
 /// With the number of runs and the day of the last one.
 int cmd_people_list(const CommandContext& context, const PeopleOptions& options);
-/// Writes persons, runs, metrics and faults as one file each. Status 0; 1 if one cannot be written; 2 if the person is
-/// not known.
+/// Writes persons, runs, metrics and faults as one file each, or statements of the Experience API. Status 0; 1 if one
+/// cannot be written; 2 if the person is not known.
 int cmd_people_export(const CommandContext& context, const PeopleOptions& options);
+/// Sends what is in the outbox to a learning record store; without its address, says what is in the outbox. Status 0; 1
+/// if something was not sent or was refused; 2 if an option is wrong, or, while watching, if the store does not let the
+/// account in.
+int cmd_people_send(const CommandContext& context, const PeopleOptions& options);
 /// Removes a person with all runs, recordings and reports. Status 0, also if there is nothing; 1 if a file cannot be
 /// removed.
 int cmd_people_forget(const CommandContext& context, const PeopleOptions& options);

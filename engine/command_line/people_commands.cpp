@@ -40,12 +40,20 @@ void add_people_commands(CommandLine& line) {
   progress->add_option("curriculum", o->curriculum, "its file")->required();
   progress->add_flag("--json", o->json, "as JSON");
 
-  auto* exported = add("export", "tables of persons, runs, metrics and faults", cmd_people_export);
-  exported->add_option("-o,--output", o->output, "folder to write to")->required();
+  auto* exported = add("export", "tables of persons, runs, metrics and faults, or statements", cmd_people_export);
+  exported->add_option("-o,--output", o->output, "folder to write tables to");
+  exported->add_option("--xapi", o->xapi, "file to write statements of the Experience API to, as JSON");
   exported->add_option("--person", o->pseudonym, "only this one (default: all, and guests)");
   exported->add_option("--format", o->format, "one file for each table")
       ->check(CLI::IsMember({"csv", "json"}))
       ->capture_default_str();
+
+  auto* send = add("send", "send attempts to a learning record store, or say what waits", cmd_people_send);
+  add_record_store(*send, o->lrs, o->login, "--login");
+  send->add_flag("--watch", o->watch, "go on until Ctrl-C, and send what is new")->needs("--lrs");
+  send->add_flag("--all", o->queue_all, "queue also what was refused, and runs of before there was a queue");
+  send->add_option("--home-page", o->home_page,
+                   "address of this installation, to which its accounts belong (default: one drawn at random)");
 
   auto* forget = add("forget", "remove a person with all runs, recordings and reports", cmd_people_forget);
   forget->add_option("pseudonym", o->pseudonym, "of the person")->required();

@@ -32,6 +32,8 @@ struct PlayOptions {
   std::filesystem::path bands;   ///< of `insula bands --json`, for the reports; empty: none
   std::string band_group;        ///< whose bands; empty: the only group
   std::vector<std::string> fields;                  ///< NAME=VALUE, of the recording
+  std::string lrs;                                  ///< learning record store to send attempts to; empty: none
+  std::filesystem::path lrs_login;                  ///< file with its NAME:PASSWORD; empty: of the environment
   bool start_page = false;                          ///< the viewer begins with the start page
   bool reload = true;                               ///< loads the scene again when one of its files is saved
   bool view = false;                                ///< shows the scene: time stands still, no hands (insula view)

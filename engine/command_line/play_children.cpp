@@ -66,6 +66,17 @@ ChildSpec haptic_child(const PlayOptions& options, const fs::path& folder) {
   return server;
 }
 
+ChildSpec sender_child(const PlayOptions& options, const fs::path& program) {
+  ChildSpec sender;
+  sender.name = "sender";
+  sender.may_stay_away = true;
+  sender.command = {program.string(), "people", "send", "--watch", "--lrs", options.lrs};
+  if (!options.lrs_login.empty())
+    sender.command.insert(sender.command.end(), {"--login", fs::absolute(options.lrs_login).string()});
+  if (!options.data.empty()) sender.command.insert(sender.command.end(), {"--data", options.data.string()});
+  return sender;
+}
+
 /// The options for another exercise or person. A motion and bands belong to the first scene, and its mode is chosen on
 /// the page.
 PlayOptions chosen_options(const PlayOptions& first, const ChosenExercise& choice) {

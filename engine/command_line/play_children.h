@@ -30,6 +30,9 @@ ChildSpec haptic_child(const PlayOptions& options, const std::filesystem::path& 
 ChildSpec gateway_child(const PlayOptions& options, const std::filesystem::path& folder, const StartPageFiles& files,
                         const GatewayLines& lines);
 
+/// Sends what persons do to the learning record store of the options. The session goes on without it.
+ChildSpec sender_child(const PlayOptions& options, const std::filesystem::path& program);
+
 /// The options for another exercise or person. A motion and bands belong to the first scene, and the mode is chosen on
 /// the page.
 PlayOptions chosen_options(const PlayOptions& first, const ChosenExercise& choice);

@@ -138,6 +138,10 @@ void Supervisor::after_exit(Child& child, const ChildExit& exit) {
     print_(fmt::format("insula: {} {}; it waits for the next save", child.spec.name, exit.text()));
     return;
   }
+  if (child.spec.may_stay_away && (exit.status == 2 || exit.status >= 100)) {
+    print_(fmt::format("insula: {} {}; the session goes on without it", child.spec.name, exit.text()));
+    return;
+  }
   if (exit.status == 2 || exit.status >= 100) {
     print_(fmt::format("insula: {} {}; ending", child.spec.name, exit.text()));
     return end_all(exit.status == 2 ? 2 : 1);

@@ -29,6 +29,7 @@ struct ChildSpec {
   bool ends_session = false;         ///< if it ends with status 0, the session ends
   bool waits_for_offer = false;  ///< if it has run before and ends because of bad input (status 2), it stays away until
                                  ///< there is another offer
+  bool may_stay_away = false;    ///< if it cannot go on (status 2, or 100 and more), the session goes on without it
   /// Gets each line of output, and may change the command for the next start. Returns false if the line shall not be
   /// shown.
   std::function<bool(ChildSpec&, std::string_view)> on_line;
@@ -56,7 +57,8 @@ class Supervisor {
   bool offer(const std::string& name, Offer offer);
   /// Runs until SIGINT, SIGTERM or SIGHUP, the end of the duration, or the exit of a child that ends the session.
   /// Status 0; 2 if a child reports bad input (status 2); 1 if a program cannot be run or refuses its arguments (status
-  /// 100 and more). Must be called on the main thread, since children die with the thread that started them.
+  /// 100 and more), unless it may stay away. Must be called on the main thread, since children die with the thread that
+  /// started them.
   int run();
 
  private:

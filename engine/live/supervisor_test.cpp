@@ -97,6 +97,24 @@ TEST_F(SupervisorTest, AMissingProgramEndsEverything) {
   EXPECT_EQ(count("[ghost] cannot execute"), 1);
 }
 
+TEST_F(SupervisorTest, OneThatMayStayAwayDoesNotEndTheSession) {
+  Supervisor s = make();
+  ChildSpec refused = shell("sender", "exit 2"), missing = shell("ghost", ""), killed = shell("fragile", "kill -9 $$");
+  missing.command = {"/no/such/program"};
+  for (ChildSpec* spec : {&refused, &missing, &killed}) {
+    spec->may_stay_away = true;
+    s.add(*spec);
+  }
+  ChildSpec engine = shell("engine", "sleep 0.5");
+  engine.ends_session = true;
+  s.add(std::move(engine));
+  EXPECT_EQ(s.run(), 0);
+  EXPECT_EQ(count("sender ended with status 2; the session goes on without it"), 1);
+  EXPECT_EQ(count("sender started"), 1);
+  EXPECT_EQ(count("ghost started"), 1);
+  EXPECT_GE(count("fragile started"), 2) << "one that was killed comes back";
+}
+
 TEST_F(SupervisorTest, LinesArePassedOnWhole) {
   Supervisor s = make();
   std::vector<std::string> seen;

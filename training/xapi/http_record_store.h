@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A learning record store over HTTP. Certificates are verified, and no redirection is followed.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "training/xapi/login.h"
+#include "training/xapi/record_store.h"
+
+namespace insula::xapi {
+
+class HttpRecordStore : public RecordStore {
+ public:
+  /// endpoint: address of the store, to which "/statements" is added. Throws InputError if it is no address, if it
+  /// contains a name or a password, or if it is not encrypted and leads to another machine.
+  HttpRecordStore(const std::string& endpoint, Login login);
+  ~HttpRecordStore() override;
+
+  Answer post(const std::string& statements) override;
+  Answer get(const std::string& id) override;
+
+ private:
+  struct Connection;
+  Answer ask(const std::string& url, const std::string* body);
+
+  std::string statements_;  // address
+  Login login_;
+  std::unique_ptr<Connection> connection_;
+};
+
+}  // namespace insula::xapi
