@@ -27,8 +27,9 @@ struct GatewayLines {
 ChildSpec engine_child(const PlayOptions& options, const std::filesystem::path& program,
                        const std::filesystem::path& bundles);
 ChildSpec haptic_child(const PlayOptions& options, const std::filesystem::path& folder);
+/// pins: file of write_pins(); empty: none.
 ChildSpec gateway_child(const PlayOptions& options, const std::filesystem::path& folder, const StartPageFiles& files,
-                        const GatewayLines& lines);
+                        const std::filesystem::path& pins, const GatewayLines& lines);
 
 /// The options for another exercise or person. A motion and bands belong to the first scene, and the mode is chosen on
 /// the page.
