@@ -184,6 +184,7 @@ void add_play(Options& c) {
   auto& o = c.play;
   auto* command = c.app.add_subcommand("play", "engine, haptic server and viewer together, until Ctrl-C");
   command->add_option("scene", o.scene, "scene file (default: the first training exercise)");
+  insula::add_room_options(*command, o.room);
   command->add_option("--motion", o.motion, "what simulated hands follow: a motion of the scene, a CSV file, or none");
   command->add_option(
       "--left", o.left,

@@ -196,6 +196,13 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
   const ChildSpec engine = engine_child(options, program, bundles.path());
   SceneReload reload(options.scene, options.plugin_paths, on_standby(engine.command),
                      bundles.path().empty() ? fs::path() : bundles.path() / "notice.txt", print);
+  fs::path pins;
+  try {
+    pins = write_pins(options.room, bundles.path(), print);
+  } catch (const InputError& e) {
+    context.err << "error: " << e.what() << '\n';
+    return 2;
+  }
   const StartPageFiles files = start_page_files(options, bundles.path());
   const auto command_of = [&](const ChosenExercise& choice) {
     return engine_child(chosen_options(options, choice), program, bundles.path()).command;
@@ -218,7 +225,8 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
     if (first && options.browser && has_display()) open_browser(url);
   };
   // The viewer starts first, so that it is available while the engine loads.
-  supervisor.add(gateway_child(options, folder, files, {serving, [&](std::string_view json) { choice.ask(json); }}));
+  supervisor.add(
+      gateway_child(options, folder, files, pins, {serving, [&](std::string_view json) { choice.ask(json); }}));
   if (!options.view) supervisor.add(haptic_child(options, folder));
   supervisor.add(engine);
   if (!options.lrs.empty()) supervisor.add(sender_child(options, program));

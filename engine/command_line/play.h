@@ -8,6 +8,7 @@
 
 #include "core/registry/registry.h"
 #include "engine/command_line/commands.h"
+#include "engine/command_line/play_room.h"
 
 namespace insula {
 
@@ -19,6 +20,7 @@ struct PlayOptions {
   int port = 8080;                   ///< the viewer's; if it is busy, the next ones are tried
   std::vector<std::string> hosts;    ///< names by which pages of other machines may address the viewer
   std::string listen = "127.0.0.1";  ///< 0.0.0.0 lets other machines watch
+  RoomOptions room;                  ///< who else is admitted
   bool browser = true;               ///< opens a browser if there is a display
   double duration_s = 0;             ///< 0: until Ctrl-C
   std::string rate;                  ///< steps a second of the engine, or auto; empty: the scene's

@@ -96,7 +96,7 @@ std::string person_of(const PlayOptions& options) {
 }
 
 ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, const StartPageFiles& files,
-                        const GatewayLines& lines) {
+                        const fs::path& pins, const GatewayLines& lines) {
   ChildSpec gateway;
   gateway.name = "gateway";
   std::vector<std::string> command{(folder / "gateway").string(), "--listen", options.listen, "--sessions",
@@ -105,6 +105,8 @@ ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, cons
   if (!options.store.empty()) command.insert(command.end(), {"--store", options.store.string()});
   if (!files.catalogue.empty())
     command.insert(command.end(), {"--catalogue", files.catalogue.string(), "--choice", files.choice.string()});
+  const std::vector<std::string> room = room_arguments(options.room, pins, options.data);
+  command.insert(command.end(), room.begin(), room.end());
   if (options.start_page) command.emplace_back("--start");
   gateway.command = command;
   gateway.command.insert(gateway.command.end(), {"--port", std::to_string(options.port)});

@@ -27,8 +27,9 @@ struct GatewayLines {
 ChildSpec engine_child(const PlayOptions& options, const std::filesystem::path& program,
                        const std::filesystem::path& bundles);
 ChildSpec haptic_child(const PlayOptions& options, const std::filesystem::path& folder);
+/// pins: file of write_pins(); empty: none.
 ChildSpec gateway_child(const PlayOptions& options, const std::filesystem::path& folder, const StartPageFiles& files,
-                        const GatewayLines& lines);
+                        const std::filesystem::path& pins, const GatewayLines& lines);
 
 /// Sends what persons do to the learning record store of the options. The session goes on without it.
 ChildSpec sender_child(const PlayOptions& options, const std::filesystem::path& program);

@@ -85,6 +85,25 @@ Role role_of(std::string_view target) {
   return Role::trainee;
 }
 
-Rights rights_of(Role role, bool here) { return {role == Role::trainee && here, role != Role::observer}; }
+bool same_machine(const asio::ip::address& remote, const asio::ip::address& local) {
+  return remote.is_loopback() || remote == local;
+}
+
+std::string_view name_of(Access access) {
+  return access == Access::here         ? "here"
+         : access == Access::instructor ? "instructor"
+         : access == Access::observer   ? "observer"
+                                        : "none";
+}
+
+std::string_view name_of(Role role) {
+  return role == Role::trainee ? "trainee" : role == Role::instructor ? "instructor" : "observer";
+}
+
+Rights rights_of(Role role, Access access) {
+  const bool trusted = access >= Access::instructor;
+  const bool acts = trusted && role != Role::observer;
+  return {role == Role::trainee && access == Access::here, acts, acts, trusted && role == Role::instructor};
+}
 
 }  // namespace insula::gateway

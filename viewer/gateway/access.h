@@ -2,6 +2,7 @@
 // Access to the gateway: the host names that it accepts, and the messages that a page of each role may send.
 #pragma once
 #include <boost/asio/ip/address.hpp>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,20 +28,38 @@ class AllowedHosts {
   std::vector<std::string> given_;
 };
 
-/// Role of a page. The page chooses it when it connects ("/ws?role=observer"). This keeps order in a training room but
-/// is not a security measure.
+/// Whether the ends of a connection are both on this machine.
+using IsHere = std::function<bool(const boost::asio::ip::address& remote, const boost::asio::ip::address& local)>;
+bool same_machine(const boost::asio::ip::address& remote, const boost::asio::ip::address& local);
+
+/// What a request may do at most: that of its machine, or of its login (logins.h). In rising order.
+enum class Access { none, observer, instructor, here };
+std::string_view name_of(Access access);
+
+/// Role of a page. The page chooses it when it connects ("/ws?role=observer"), within what its access admits.
 enum class Role { trainee, instructor, observer };
 
 /// The role in the query of a request target, or trainee if there is none. An unknown role is an observer.
 Role role_of(std::string_view target);
+std::string_view name_of(Role role);
 
 struct Rights {
   bool hands = false;     ///< may send HAND_INPUT
   bool commands = false;  ///< may send USER_COMMAND
+  bool speaks = false;    ///< may write to the others
+  bool draws = false;     ///< may draw and point on the others' pictures
 };
 
-/// Trainees move hands and give commands, instructors give commands, observers only watch. Only pages on this machine
-/// may move hands. `here`: whether the page is on this machine.
-Rights rights_of(Role role, bool here);
+/// Trainees move hands and give commands, instructors give commands and draw, observers only watch. Only pages on this
+/// machine may move hands. Pages of other machines do no more than their login admits.
+Rights rights_of(Role role, Access access);
+
+/// Who asks for something.
+struct Visitor {
+  std::string address;  ///< of the machine
+  Access access = Access::none;
+  Role role = Role::observer;
+  Rights rights() const { return rights_of(role, access); }
+};
 
 }  // namespace insula::gateway

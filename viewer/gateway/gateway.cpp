@@ -28,6 +28,10 @@ struct Gateway::Impl {
         sessions(options.sessions, options.session_files),
         training(
             options.training, options.choose ? options.choose : [](const std::string&) {}),
+        logins(options.secrets),
+        audit(options.audit),
+        login_api(logins, audit),
+        tls(options.tls.certificate.empty() ? nullptr : server_context(options.tls)),
         hub(bus, [this](std::function<void()> f) { asio::post(io, std::move(f)); }) {}
 
   Options options;
@@ -35,11 +39,18 @@ struct Gateway::Impl {
   PageFolder page;
   Sessions sessions;
   TrainingApi training;
+  Logins logins;
+  Audit audit;
+  LoginApi login_api;
+  std::unique_ptr<asio::ssl::context> tls;
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
   asio::steady_timer retry{io};
   asio::steady_timer repeat{io};
   Hub hub;
+  Station station{options.station, options.training.choice};
+  Room room{io, options.stations, options.secrets.key};
+  Site site{hub, hosts, page, sessions, training, logins, login_api, audit, options.is_here, station, room};
   std::atomic<bool> stopping{false};
   std::thread network, bus_thread;
   std::uint16_t port = 0;
@@ -65,6 +76,7 @@ std::string Gateway::Impl::open() {
     if (!error) acceptor.listen(tcp::acceptor::max_listen_connections, error);
     if (!error) {
       port = acceptor.local_endpoint().port();
+      login_api.set_place(port, tls != nullptr);
       return {};
     }
     boost::system::error_code ignored;
@@ -78,7 +90,7 @@ void Gateway::Impl::accept() {
   acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
     if (stopping) return;
     if (!error) {
-      std::make_shared<HttpSession>(std::move(socket), hub, hosts, page, sessions, training)->start();
+      std::make_shared<HttpSession>(std::move(socket), tls.get(), site)->start();
       return accept();
     }
     // Out of file descriptors, most likely: wait for some to come back instead of spinning.
@@ -104,6 +116,8 @@ Gateway::~Gateway() { stop(); }
 
 std::string Gateway::start() {
   if (std::string error = impl_->open(); !error.empty()) return error;
+  impl_->hub.watch(impl_->station);
+  impl_->room.start();
   impl_->accept();
   impl_->repeat_hands();
   impl_->network = std::thread([this] { impl_->io.run(); });
@@ -126,7 +140,7 @@ std::string Gateway::url() const {
   const std::string& at = impl_->options.listen;
   std::string host = at == "0.0.0.0" || at == "::" ? "localhost" : at;
   if (host.find(':') != std::string::npos) host = "[" + host + "]";
-  return fmt::format("http://{}:{}/", host, impl_->port);
+  return fmt::format("{}://{}:{}/", impl_->tls ? "https" : "http", host, impl_->port);
 }
 
 std::string Gateway::sessions_query() const {

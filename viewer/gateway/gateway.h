@@ -10,6 +10,10 @@
 #include <vector>
 
 #include "core/bus/bus.h"
+#include "viewer/gateway/access.h"
+#include "viewer/gateway/secrets.h"
+#include "viewer/gateway/station_list.h"
+#include "viewer/gateway/tls.h"
 #include "viewer/gateway/training_api.h"
 
 namespace insula::gateway {
@@ -25,11 +29,18 @@ struct Options {
   std::function<void(const std::string&)> choose;    ///< gets a chosen exercise (TrainingApi)
   std::filesystem::path sessions;                    ///< folder of recorded sessions to offer; empty: none
   std::vector<std::filesystem::path> session_files;  ///< further ones
+  Secrets secrets;                                   ///< admit pages of other machines to more than observing
+  CertificateFiles tls;                              ///< empty: plain HTTP
+  std::filesystem::path audit;                       ///< record of commands; empty: none
+  std::string station;                               ///< its name in overviews; empty: the machine's
+  std::vector<StationAddress> stations;              ///< of the room, for the overview
+  IsHere is_here = same_machine;                     ///< tells pages on this machine from others
 };
 
 class Gateway {
  public:
-  /// The bus must outlive the gateway. Only the gateway may poll it.
+  /// The bus must outlive the gateway. Only the gateway may poll it. Throws InputError if the record of commands or the
+  /// certificate cannot be used.
   Gateway(Bus& bus, Options options);
   ~Gateway();  ///< stops
   Gateway(const Gateway&) = delete;

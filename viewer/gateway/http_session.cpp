@@ -29,28 +29,24 @@ namespace fs = std::filesystem;
 
 std::string_view view(beast::string_view s) { return {s.data(), s.size()}; }
 
-/// A page of another site may open a WebSocket to this one: browsers send its origin, which must be ours. The port may
-/// differ (the page's development server). Programs that are no browsers send no origin.
-bool same_site(const http::request<http::string_body>& request) {
-  const std::string_view origin = view(request[http::field::origin]);
-  if (origin.empty()) return true;
-  const std::size_t scheme = origin.find("://");
-  if (scheme == std::string_view::npos) return false;
-  const std::string name = host_name(origin.substr(scheme + 3));
-  return !name.empty() && name == host_name(view(request[http::field::host]));
-}
-
 }  // namespace
 
-HttpSession::HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const AllowedHosts& hosts,
-                         const PageFolder& page, const Sessions& sessions, TrainingApi& training)
-    : stream_(std::move(socket)), hub_(hub), hosts_(hosts), page_(page), sessions_(sessions), training_(training) {}
+HttpSession::HttpSession(boost::asio::ip::tcp::socket&& socket, boost::asio::ssl::context* tls, const Site& site)
+    : stream_(std::move(socket), tls), site_(site) {}
+
+void HttpSession::start() {
+  if (!stream_.encrypted()) return read();
+  stream_.next_layer().expires_after(request_timeout);
+  stream_.async_handshake([self = shared_from_this()](beast::error_code error) {
+    if (!error) self->read();
+  });
+}
 
 void HttpSession::read() {
   parser_.emplace();
   parser_->header_limit(header_limit);
   parser_->body_limit(Sessions::most_notes_bytes);
-  stream_.expires_after(request_timeout);
+  stream_.next_layer().expires_after(request_timeout);
   http::async_read(stream_, in_, *parser_,
                    [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_read(error); });
 }
@@ -59,16 +55,29 @@ void HttpSession::on_read(beast::error_code error) {
   if (error) return close();
   const Request request = parser_->release();
   if (refuse_foreign(request)) return;
+  visitor_ = visitor_of(request);
+  if (refuse_strangers(request)) return;
   beast::websocket::is_upgrade(request) ? upgrade(request) : answer(request);
+}
+
+/// A page of another site may open a WebSocket to this one: browsers send its origin, which must be ours. The port may
+/// differ (the page's development server). Programs that are no browsers send no origin.
+bool HttpSession::same_site(const Request& request) {
+  const std::string_view origin = view(request[http::field::origin]);
+  if (origin.empty()) return true;
+  const std::size_t scheme = origin.find("://");
+  if (scheme == std::string_view::npos) return false;
+  const std::string name = host_name(origin.substr(scheme + 3));
+  return !name.empty() && name == host_name(view(request[http::field::host]));
 }
 
 /// A request under a name that is not ours is not answered, whatever it asks for: a foreign page may have let its own
 /// name point here (DNS rebinding).
 bool HttpSession::refuse_foreign(const Request& request) {
   beast::error_code error;
-  const auto reached = stream_.socket().local_endpoint(error);
+  const auto reached = socket().local_endpoint(error);
   const std::string_view host = view(request[http::field::host]);
-  if (!error && request.count(http::field::host) == 1 && hosts_.allows(host, reached.address())) return false;
+  if (!error && request.count(http::field::host) == 1 && site_.hosts.allows(host, reached.address())) return false;
   send_text(request, http::status::misdirected_request, "text/plain; charset=utf-8",
             "This viewer does not answer to the name " + in_quotes(host) +
                 ". Ask for it by its address, or start it with --host NAME to allow a name.\n");
@@ -79,15 +88,56 @@ void HttpSession::upgrade(const Request& request) {
   if (request.target() != "/ws" && !request.target().starts_with("/ws?"))
     return send_text(request, http::status::not_found, "text/plain", "no WebSocket here\n");
   if (!same_site(request)) return send_text(request, http::status::forbidden, "text/plain", "foreign origin\n");
-  const bool here = from_this_machine();
-  std::make_shared<WsClient>(std::move(stream_), hub_, rights_of(role_of(view(request.target())), here))
-      ->start(request);
+  std::make_shared<WsClient>(std::move(stream_), site_.hub, site_.audit, visitor_)->start(request);
+}
+
+/// What must log in is told from what is on this machine by the addresses of the connection.
+Visitor HttpSession::visitor_of(const Request& request) {
+  beast::error_code error;
+  const auto remote = socket().remote_endpoint(error);
+  Visitor out{error ? std::string() : remote.address().to_string(), Access::here, role_of(view(request.target()))};
+  if (from_this_machine()) return out;
+  const Credentials credentials =
+      site_.login_api.credentials(view(request[http::field::cookie]), view(request[http::field::authorization]));
+  out.access = site_.login_api.access_of(credentials, out.address);
+  return out;
+}
+
+/// Without a login, only the login page is to be had. It brings nothing of the session.
+bool HttpSession::refuse_strangers(const Request& request) {
+  if (visitor_.access != Access::none) return false;
+  const std::string_view target = view(request.target());
+  const std::string_view path = target.substr(0, target.find_first_of("?#"));
+  if (path == "/login.html" || path == "/api/login" || path.starts_with("/assets/")) return false;
+  const bool page = path == "/" || path.ends_with(".html");
+  if (page && request.method() == http::verb::get) {
+    const std::string to = "/login.html?next=" + percent_encoded(target.size() < 500 ? target : path);
+    send_text(request, http::status::see_other, "text/plain", "log in first\n", {{http::field::location, to}});
+  } else {
+    send_text(request, http::status::unauthorized, "application/json", "{\"error\": \"log in first\"}\n");
+  }
+  return true;
 }
 
 bool HttpSession::from_this_machine() const {
   beast::error_code no_local, no_remote;
-  const auto local = stream_.socket().local_endpoint(no_local), remote = stream_.socket().remote_endpoint(no_remote);
-  return !no_local && !no_remote && (remote.address().is_loopback() || remote.address() == local.address());
+  const auto local = socket().local_endpoint(no_local), remote = socket().remote_endpoint(no_remote);
+  return !no_local && !no_remote && site_.is_here(remote.address(), local.address());
+}
+
+/// GET and POST /api/login, POST /api/logout.
+void HttpSession::answer_login(const Request& request, bool out) {
+  const bool posts = request.method() == http::verb::post;
+  if (!posts && !out)
+    return send_text(request, http::status::ok, "application/json", site_.login_api.state(visitor_.access));
+  if (!posts || !same_site(request))
+    return send_text(request, http::status::forbidden, "application/json", "{\"error\": \"foreign origin\"}\n");
+  const Credentials credentials = site_.login_api.credentials(view(request[http::field::cookie]), {});
+  const LoginApi::Answer answer =
+      out ? site_.login_api.log_out(credentials) : site_.login_api.log_in(request.body(), visitor_.address);
+  std::vector<std::pair<http::field, std::string>> fields;
+  if (!answer.set_cookie.empty()) fields.emplace_back(http::field::set_cookie, answer.set_cookie);
+  send_text(request, http::status(answer.status), "application/json", answer.json, fields);
 }
 
 /// /sessions, /sessions/NAME, /sessions/NAME/notes. A recording is a person's data and does not leave this machine.
@@ -100,8 +150,8 @@ void HttpSession::answer_session(const Request& request, const std::vector<std::
   const bool stores = request.method() == http::verb::put;
   const bool notes = parts.size() == 3 && parts[2] == "notes";
   if (stores && !notes) return refuse(http::status::method_not_allowed, "only notes can be stored\n");
-  if (parts.size() == 1) return send_text(request, http::status::ok, "application/json", sessions_.list());
-  const auto file = sessions_.find(parts[1]);
+  if (parts.size() == 1) return send_text(request, http::status::ok, "application/json", site_.sessions.list());
+  const auto file = site_.sessions.find(parts[1]);
   if (!file || parts.size() > 3 || (parts.size() == 3 && !notes))
     return refuse(http::status::not_found, "there is no such session here\n");
   if (!notes) return send_recording(request, *file);
@@ -125,14 +175,16 @@ void HttpSession::answer_training(const Request& request, const std::vector<std:
   const std::string_view query = mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
   if (request.method() == http::verb::post) {
     if (!same_site(request)) return refuse(http::status::forbidden, "foreign origin");
-    const TrainingApi::Answer answer = training_.post(parts[1], request.body());
+    const TrainingApi::Answer answer = site_.training.post(parts[1], request.body());
+    site_.audit.write({visitor_.address, "here", 0, parts[1] + " " + request.body(), answer.status < 300,
+                       answer.status < 300 ? "" : answer.json});
     return send_text(request, http::status(answer.status), "application/json", answer.json);
   }
   if (parts[1] == "picture") {
-    const fs::path file = training_.picture(query_value(query, "scene"));
+    const fs::path file = site_.training.picture(query_value(query, "scene"));
     return file.empty() ? refuse(http::status::not_found, "no picture") : send_file(request, file, "no-cache");
   }
-  const TrainingApi::Answer answer = training_.get(parts[1], query);
+  const TrainingApi::Answer answer = site_.training.get(parts[1], query);
   send_text(request, http::status(answer.status), "application/json", answer.json);
 }
 
@@ -140,6 +192,10 @@ void HttpSession::answer(const Request& request) {
   auto parts = split_target(view(request.target()));
   const bool session = parts && parts->front() == "sessions";
   const bool training = parts && parts->front() == "api";
+  if (training && parts->size() == 2 && (parts->back() == "login" || parts->back() == "logout"))
+    return answer_login(request, parts->back() == "logout");
+  if (training && parts->size() >= 2 && ((*parts)[1] == "station" || (*parts)[1] == "room" || (*parts)[1] == "ticket"))
+    return answer_room(request, *parts);
   if (training && request.method() == http::verb::post) return answer_training(request, *parts);
   if (session && request.method() == http::verb::put) return answer_session(request, *parts);
   if (request.method() != http::verb::get && request.method() != http::verb::head)
@@ -149,15 +205,15 @@ void HttpSession::answer(const Request& request) {
   const auto not_found = [&] { send_text(request, http::status::not_found, "text/plain", "not found\n"); };
   if (!parts) return not_found();
   if (*parts == std::vector<std::string>{"healthz"})
-    return send_text(request, http::status::ok, "application/json", hub_.health());
+    return send_text(request, http::status::ok, "application/json", site_.hub.health());
   if (parts->front() == "bundle") {
     if (parts->size() < 3) return not_found();
-    const auto file = hub_.bundle().find((*parts)[1], {parts->begin() + 2, parts->end()});
+    const auto file = site_.hub.bundle().find((*parts)[1], {parts->begin() + 2, parts->end()});
     return file ? send_file(request, *file, "no-store") : not_found();
   }
   // A query belongs to the exercise's page: "/?role=instructor".
-  if (parts->back().empty()) parts->back() = page_.start && request.target() == "/" ? "start.html" : "index.html";
-  const auto file = page_.folder.empty() ? std::nullopt : file_below(page_.folder, *parts);
+  if (parts->back().empty()) parts->back() = site_.page.start && request.target() == "/" ? "start.html" : "index.html";
+  const auto file = site_.page.folder.empty() ? std::nullopt : file_below(site_.page.folder, *parts);
   if (file) {
     // Built assets carry a hash in their name; everything else must be asked for again.
     const bool hashed = parts->front() == "assets";
@@ -168,16 +224,18 @@ void HttpSession::answer(const Request& request) {
     const bool packed = accepts_gzip(view(request[http::field::accept_encoding])) && fs::is_regular_file(copy, error);
     return send_file(request, packed ? fs::path(copy) : *file, caching, packed);
   }
-  if (page_.folder.empty() && parts->size() == 1 && parts->back().ends_with(".html"))
+  if (site_.page.folder.empty() && parts->size() == 1 && parts->back().ends_with(".html"))
     return send_text(request, http::status::service_unavailable, "text/html; charset=utf-8", std::string(not_built));
   not_found();
 }
 
-void HttpSession::send_text(const Request& request, http::status status, std::string_view type, std::string body) {
+void HttpSession::send_text(const Request& request, http::status status, std::string_view type, std::string body,
+                            const std::vector<std::pair<http::field, std::string>>& fields) {
   http::response<http::string_body> response{status, request.version()};
   response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
   response.set(http::field::cache_control, "no-store");
   response.set("X-Content-Type-Options", "nosniff");
+  for (const auto& [field, value] : fields) response.set(field, value);
   response.keep_alive(request.keep_alive());
   if (request.method() == http::verb::head) {
     response.content_length(body.size());  // of what GET would give
@@ -255,7 +313,7 @@ void HttpSession::send(Response&& response) {
 
 void HttpSession::close() {
   beast::error_code ignored;
-  stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+  socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
 }
 
 }  // namespace insula::gateway

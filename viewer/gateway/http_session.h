@@ -8,39 +8,39 @@
 #include <memory>
 #include <optional>
 
-#include "viewer/gateway/access.h"
-#include "viewer/gateway/hub.h"
-#include "viewer/gateway/sessions.h"
-#include "viewer/gateway/training_api.h"
+#include "viewer/gateway/page_stream.h"
+#include "viewer/gateway/site.h"
 
 namespace insula::gateway {
 
 namespace beast = boost::beast;
 namespace http = beast::http;
 
-/// The built page.
-struct PageFolder {
-  std::filesystem::path folder;  ///< empty: it is not built
-  bool start = false;            ///< "/" is the start page, else that of the exercise
-};
-
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const AllowedHosts& hosts, const PageFolder& page,
-              const Sessions& sessions, TrainingApi& training);
-  void start() { read(); }
+  /// tls: null for plain HTTP.
+  HttpSession(boost::asio::ip::tcp::socket&& socket, boost::asio::ssl::context* tls, const Site& site);
+  void start();
 
  private:
   using Request = http::request<http::string_body>;
   void read();
   void on_read(beast::error_code error);
+  static bool same_site(const Request& request);
   bool refuse_foreign(const Request& request);
+  bool refuse_strangers(const Request& request);
+  Visitor visitor_of(const Request& request);
   void upgrade(const Request& request);
   void answer(const Request& request);
+  void answer_login(const Request& request, bool out);
+  void answer_room(const Request& request, const std::vector<std::string>& parts);
+  void take_picture(const Request& request);
+  void give_ticket(const Request& request);
   void answer_training(const Request& request, const std::vector<std::string>& parts);
   void answer_session(const Request& request, const std::vector<std::string>& parts);
   bool from_this_machine() const;
-  void send_text(const Request& request, http::status status, std::string_view type, std::string body);
+  void send_text(const Request& request, http::status status, std::string_view type, std::string body,
+                 const std::vector<std::pair<http::field, std::string>>& fields = {});
   void send_file(const Request& request, const std::filesystem::path& file, std::string_view caching,
                  bool packed = false);
   /// A part of a file, where the request asks for one; otherwise all of it.
@@ -49,12 +49,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void send(Response&& response);
   void close();
 
-  beast::tcp_stream stream_;
-  Hub& hub_;
-  const AllowedHosts& hosts_;
-  const PageFolder& page_;
-  const Sessions& sessions_;
-  TrainingApi& training_;
+  boost::asio::ip::tcp::socket& socket() { return stream_.next_layer().socket(); }
+  const boost::asio::ip::tcp::socket& socket() const { return stream_.next_layer().socket(); }
+
+  PageStream stream_;
+  Site site_;
+  Visitor visitor_;  ///< of the present request
   beast::flat_buffer in_;
   std::optional<http::request_parser<http::string_body>> parser_;
 };

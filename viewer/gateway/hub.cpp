@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/bus/codec.h"
+#include "viewer/gateway/room_message.h"
 
 namespace insula::gateway {
 namespace {
@@ -20,6 +21,8 @@ std::int64_t now_us() {
 constexpr std::array<std::string_view, topics> channel_of{channel::scene_info,    channel::sim_event,
                                                           channel::render_frame,  channel::device_state,
                                                           channel::haptic_status, channel::metrics};
+
+const Hub::Taken malformed{false, "", "malformed"};
 
 }  // namespace
 
@@ -55,10 +58,21 @@ void Hub::forward(std::string_view channel, Topic topic, T& scratch) {
         session_ = info.session;
         state_ = info.state;
         bundle_.set(info.session, info.bundle);
+        if (station_) station_->scene(info);
         broadcast(Topic::scene_info, message);
       });
+    } else if constexpr (std::is_same_v<T, insula_lcm::sim_event_t>) {
+      post_([this, message, event = scratch] {
+        if (station_) station_->event(event);
+        broadcast(Topic::sim_event, message);
+      });
+    } else if constexpr (std::is_same_v<T, insula_lcm::render_frame_t>) {
+      last_frame_us_ = now_us();
+      post_([this, message, time_s = scratch.sim_time_s] {
+        if (station_) station_->frame(time_s, Clock::now());
+        broadcast(Topic::render_frame, message);
+      });
     } else {
-      if (topic == Topic::render_frame) last_frame_us_ = now_us();
       post_([this, topic, message] { broadcast(topic, message); });
     }
   });
@@ -86,26 +100,38 @@ void Hub::leave(const Client* client) {
   clients_.erase(found);
 }
 
-bool Hub::command_from_page(Bytes payload) {
+Hub::Taken Hub::command_from_page(Bytes payload) {
   auto message = decode<insula_lcm::user_command_t>(payload);
-  if (!message) return false;
+  if (!message) return malformed;
   for (std::size_t i = 0; i < held_.size(); ++i)
     if (message->command == "reset" || message->command == "begin" ||
         (message->command == "release" && message->argument != (i == 0 ? "right" : "left")))
       held_[i].page = nullptr;
   message->time_us = now_us();  // a browser's clock means nothing here
-  return publish(bus_, channel::user_command, *message, scratch_);
+  const bool sent = publish(bus_, channel::user_command, *message, scratch_);
+  return {sent, message->command + (message->argument.empty() ? "" : " " + message->argument),
+          sent ? "" : "the bus does not take it"};
 }
 
-bool Hub::hand_from_page(Bytes payload, const Client* page) {
+Hub::Taken Hub::hand_from_page(Bytes payload, const Client* page) {
   auto message = decode<insula_lcm::hand_input_t>(payload);
-  if (!message) return false;
+  if (!message) return malformed;
   message->time_us = now_us();
   HeldHand& held = held_[message->hand == 1 ? 1 : 0];
   held.page = page;
   held.input = *message;
   held.asked = held.sent = Clock::now();
-  return publish(bus_, channel::hand_input, *message, scratch_);
+  return {publish(bus_, channel::hand_input, held.input, scratch_), "hand", "the bus does not take it", true};
+}
+
+Hub::Taken Hub::room_from_page(Bytes payload, const Visitor& visitor, const Client* page) {
+  const RoomMessage message = read_room_message(payload, visitor);
+  if (!message.why.empty()) return {false, message.what, message.why};
+  const Message framed =
+      frame(room_channel, {reinterpret_cast<const std::uint8_t*>(message.json.data()), message.json.size()});
+  for (const auto& client : clients_)
+    if (client.get() != page) client->send(Topic::room, framed);
+  return {true, message.what, "", message.what != "clear" && !message.what.starts_with("say")};
 }
 
 void Hub::repeat_hands(Clock::time_point now) {
@@ -121,14 +147,18 @@ void Hub::repeat_hands(Clock::time_point now) {
   }
 }
 
-bool Hub::from_page(Bytes framed, Rights rights, const Client* page) {
-  bool ok = false;
+Hub::Taken Hub::from_page(Bytes framed, const Visitor& visitor, const Client* page) {
+  const Rights rights = visitor.rights();
+  Taken taken = malformed;
   if (const auto parts = unframe(framed)) {
-    if (parts->channel == channel::user_command && rights.commands) ok = command_from_page(parts->payload);
-    else if (parts->channel == channel::hand_input && rights.hands) ok = hand_from_page(parts->payload, page);
+    if (parts->channel == channel::user_command)
+      taken = rights.commands ? command_from_page(parts->payload) : Taken{false, "command", "not allowed"};
+    else if (parts->channel == channel::hand_input)
+      taken = rights.hands ? hand_from_page(parts->payload, page) : Taken{false, "hand", "not allowed", true};
+    else if (parts->channel == room_channel) taken = room_from_page(parts->payload, visitor, page);
   }
-  ++(ok ? page_accepted_ : page_refused_);
-  return ok;
+  ++(taken.accepted ? page_accepted_ : page_refused_);
+  return taken;
 }
 
 std::string Hub::health() const {

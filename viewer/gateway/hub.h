@@ -23,6 +23,7 @@
 #include "viewer/gateway/access.h"
 #include "viewer/gateway/bundle.h"
 #include "viewer/gateway/outbox.h"
+#include "viewer/gateway/station.h"
 
 namespace insula::gateway {
 
@@ -47,14 +48,22 @@ class Hub {
   void join(const std::shared_ptr<Client>& client);  ///< gets the last SCENE_INFO at once
   void leave(const Client* client);
   /// Handles a page's message. Only a valid, plausible USER_COMMAND or HAND_INPUT for which the page has the right is
-  /// passed on. Others are counted and dropped.
-  bool from_page(Bytes framed, Rights rights, const Client* page = nullptr);
+  /// passed on, and words and strokes (room_message.h) to the other pages. Others are counted and dropped.
+  struct Taken {
+    bool accepted = false;
+    std::string what;      ///< the command with its argument, or the channel; empty: it could not be read
+    std::string_view why;  ///< it was refused
+    bool many = false;     ///< one of many with the same `what`: poses of a hand, parts of a stroke
+  };
+  Taken from_page(Bytes framed, const Visitor& visitor, const Client* page = nullptr);
   /// Called every repeat_period. Sends the last pose of each hand again whose page is connected but busy, for example
   /// with drawing. The haptic server otherwise takes such a page for lost. A page that is silent for longest_busy is.
   void repeat_hands(std::chrono::steady_clock::time_point now);
   static constexpr std::chrono::milliseconds repeat_period{50}, longest_busy{1500};
   /// Counts a page's message that was dropped before it was checked (text, too many per second).
   void refuse_from_page() { ++page_refused_; }
+  /// Tells it what is on the bus.
+  void watch(Station& station) { station_ = &station; }
   std::string health() const;  ///< JSON
   Bundle& bundle() { return bundle_; }
 
@@ -62,8 +71,9 @@ class Hub {
   template <class T>
   void forward(std::string_view channel, Topic topic, T& scratch);
   void broadcast(Topic topic, const Message& message);
-  bool command_from_page(Bytes payload);
-  bool hand_from_page(Bytes payload, const Client* page);
+  Taken command_from_page(Bytes payload);
+  Taken hand_from_page(Bytes payload, const Client* page);
+  Taken room_from_page(Bytes payload, const Visitor& visitor, const Client* page);
 
   Bus& bus_;
   Post post_;
@@ -86,6 +96,7 @@ class Hub {
 
   // Network thread.
   std::set<std::shared_ptr<Client>> clients_;  // order does not matter: each gets the same
+  Station* station_ = nullptr;
   Message last_scene_info_;
   std::int64_t session_ = 0;
   std::string state_;

@@ -6,41 +6,54 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "core/base/input_error.h"
 #include "core/base/signal_pipe.h"
 #include "core/bus/bus.h"
 #include "viewer/gateway/gateway.h"
 #include "viewer/gateway/static_files.h"
 
-int main(int argc, char** argv) {
-  CLI::App app{"Insula's gateway: serves the viewer's page and joins it to the running simulation"};
-  insula::gateway::Options options;
-  bool exact = false;
-  app.add_option("--page", options.page, "folder with the built page (index.html)");
-  app.add_option("--port", options.port, "port to listen on; following ones are tried when it is busy; 0: any")
-      ->capture_default_str();
-  app.add_flag("--exact-port", exact, "fail when the port is busy");
-  app.add_option("--listen", options.listen, "address to listen on; 0.0.0.0 lets other machines watch")
-      ->capture_default_str();
-  app.add_option("--host", options.hosts,
-                 "a name under which other machines' pages may ask for it; may be given several times");
-  app.add_option("--sessions", options.sessions, "folder of recorded sessions that pages of this machine may see");
-  app.add_option("--session", options.session_files, "a recorded session, in addition; may be given several times");
-  app.add_option("--store", options.training.store, "training store: persons and their runs");
-  app.add_option("--catalogue", options.training.catalogue, "JSON of the exercises that pages may choose from");
-  app.add_option("--choice", options.training.choice, "JSON of the running exercise");
-  app.add_flag("--start", options.start, "begin with the start page");
-  CLI11_PARSE(app, argc, argv);
-  // The program that started this one reads it.
-  options.choose = [](const std::string& json) {
-    fmt::print("choose {}\n", json);
-    std::fflush(stdout);
-  };
-  if (exact) options.more_ports = 0;
-  if (options.page.empty()) options.page = insula::gateway::find_page();
+namespace {
 
+namespace fs = std::filesystem;
+using insula::gateway::Options;
+
+/// Files that hold secrets, and where the gateway keeps its own.
+struct Places {
+  fs::path pins, key, own;
+  fs::path stations;
+  bool self_made = false;
+};
+
+void add_access_options(CLI::App& app, Options& options, Places& places) {
+  app.add_option("--pins", places.pins, "JSON {pin, observer_pin}, readable by its owner alone: admits other machines");
+  app.add_option("--room-key", places.key, "file with a key, readable by its owner alone: admits programs");
+  auto* certificate = app.add_option("--certificate", options.tls.certificate, "PEM: serves by TLS");
+  app.add_option("--key", options.tls.key, "PEM: private key of the certificate")->needs(certificate);
+  app.add_flag("--tls", places.self_made, "serves by TLS with a certificate that is made here")->excludes(certificate);
+  app.add_option("--station", options.station, "name of this station in overviews; default: the machine's");
+  app.add_option("--stations", places.stations, "file of the room's stations, for the overview: NAME URL [SHA-256]");
+  app.add_option("--own", places.own, "folder for the record of commands and the certificate made here");
+}
+
+/// Throws InputError.
+void read_access(Options& options, const Places& places) {
+  if (!places.pins.empty()) insula::gateway::read_pins(places.pins, options.secrets);
+  if (!places.key.empty()) insula::gateway::read_key(places.key, options.secrets);
+  if (!options.tls.certificate.empty() && options.tls.key.empty()) options.tls.key = options.tls.certificate;
+  if (places.self_made && places.own.empty())
+    throw insula::InputError("--tls needs --own, where its certificate is kept");
+  if (!places.stations.empty()) options.stations = insula::gateway::read_stations(places.stations);
+  if (!places.own.empty()) {
+    std::error_code error;
+    fs::create_directories(places.own, error);
+    options.audit = places.own / "commands.log";
+  }
+  if (places.self_made) options.tls = insula::gateway::self_made_certificate(places.own, options.hosts);
+}
+
+int serve(const Options& options) {
   const insula::SignalPipe ends{SIGINT, SIGTERM, SIGHUP};
   signal(SIGPIPE, SIG_IGN);
-
   const auto bus = insula::make_bus();
   if (!bus->good()) {
     fmt::print(stderr, "{}\n", bus->error());
@@ -56,11 +69,54 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (options.page.empty()) fmt::print("the viewer's page is not built; serving the data alone\n");
+  if (!options.tls.certificate.empty())
+    fmt::print("SHA-256 of the certificate: {}\n", insula::gateway::fingerprint(options.tls.certificate));
   fmt::print("serving {}\n", gateway.url());
   if (const std::string query = gateway.sessions_query(); !query.empty())
     fmt::print("recorded sessions at {}replay.html?{}\n", gateway.url(), query);
+  if (!options.stations.empty()) fmt::print("the room is at {}room.html\n", gateway.url());
   std::fflush(stdout);
   ends.wait(-1);
   gateway.stop();
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Insula's gateway: serves the viewer's page and joins it to the running simulation"};
+  Options options;
+  Places places;
+  bool exact = false;
+  app.add_option("--page", options.page, "folder with the built page (index.html)");
+  app.add_option("--port", options.port, "port to listen on; following ones are tried when it is busy; 0: any")
+      ->capture_default_str();
+  app.add_flag("--exact-port", exact, "fail when the port is busy");
+  app.add_option("--listen", options.listen, "address to listen on; 0.0.0.0 lets other machines watch")
+      ->capture_default_str();
+  app.add_option("--host", options.hosts,
+                 "a name under which other machines' pages may ask for it; may be given several times");
+  app.add_option("--sessions", options.sessions, "folder of recorded sessions that pages of this machine may see");
+  app.add_option("--session", options.session_files, "a recorded session, in addition; may be given several times");
+  app.add_option("--store", options.training.store, "training store: persons and their runs");
+  app.add_option("--catalogue", options.training.catalogue, "JSON of the exercises that pages may choose from");
+  app.add_option("--choice", options.training.choice, "JSON of the running exercise");
+  app.add_flag("--start", options.start, "begin with the start page");
+  add_access_options(app, options, places);
+  CLI11_PARSE(app, argc, argv);
+  // The program that started this one reads it.
+  options.choose = [](const std::string& json) {
+    fmt::print("choose {}\n", json);
+    std::fflush(stdout);
+  };
+  if (exact) options.more_ports = 0;
+  if (options.page.empty()) options.page = insula::gateway::find_page();
+
+  try {
+    read_access(options, places);
+    return serve(options);
+  } catch (const insula::InputError& e) {
+    fmt::print(stderr, "error: {}\n", e.what());
+    return 2;
+  }
 }

@@ -2,7 +2,13 @@
 // The WebSocket side of one page.
 #include "viewer/gateway/ws_client.h"
 
-#include <algorithm>
+#include <fmt/format.h>
+
+#include <atomic>
+#include <utility>
+
+#include "core/base/text.h"
+#include "core/bus/channels.h"
 
 namespace asio = boost::asio;
 namespace websocket = boost::beast::websocket;
@@ -11,14 +17,19 @@ namespace insula::gateway {
 namespace {
 
 constexpr std::size_t max_from_page = 64 * 1024;
-constexpr double max_messages_per_s = 500;  // two hands at 60 Hz and some commands, with room
 // Less than the kernel would take: what waits there is old by the time a slow client reads it.
 constexpr int socket_send_buffer = 128 * 1024;
 
+/// Of pages, in the record of commands.
+std::uint64_t next_number() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
 }  // namespace
 
-WsClient::WsClient(beast::tcp_stream&& stream, Hub& hub, Rights rights)
-    : ws_(std::move(stream)), hub_(hub), rights_(rights) {}
+WsClient::WsClient(PageStream&& stream, Hub& hub, Audit& audit, Visitor visitor)
+    : ws_(std::move(stream)), hub_(hub), audit_(audit), visitor_(std::move(visitor)), number_(next_number()) {}
 
 void WsClient::start(const http::request<http::string_body>& request) {
   beast::error_code ignored;
@@ -50,21 +61,32 @@ void WsClient::on_read(beast::error_code error, std::size_t) {
     return;
   }
   const auto data = in_.cdata();
-  if (ws_.got_binary() && within_rate())
-    hub_.from_page(Bytes(static_cast<const std::uint8_t*>(data.data()), data.size()), rights_, this);
-  else hub_.refuse_from_page();
+  record(take(Bytes(static_cast<const std::uint8_t*>(data.data()), data.size())));
   in_.consume(in_.size());
   read();
 }
 
-bool WsClient::within_rate() {
-  const auto now = std::chrono::steady_clock::now();
-  const double seconds = std::chrono::duration<double>(now - allowance_at_).count();
-  allowance_at_ = now;
-  allowance_ = std::min(max_messages_per_s, allowance_ + seconds * max_messages_per_s);
-  if (allowance_ < 1) return false;
-  allowance_ -= 1;
-  return true;
+Hub::Taken WsClient::take(Bytes message) {
+  const auto now = RateLimit::Clock::now();
+  const auto parts = unframe(message);
+  const bool pose = parts && parts->channel == channel::hand_input;
+  if (ws_.got_binary() && messages_.take(now) && (pose || actions_.take(now)))
+    return hub_.from_page(message, visitor_, this);
+  hub_.refuse_from_page();
+  return {false, parts ? std::string(shown(parts->channel)) : std::string(), ws_.got_binary() ? "too many" : "text"};
+}
+
+/// A line for each command; one for all poses of the hands, and one for each stroke; few for refusals, so that they do
+/// not fill the record.
+void WsClient::record(const Hub::Taken& taken) {
+  if (taken.accepted && taken.many && std::exchange(last_of_many_, taken.what) == taken.what) return;
+  if (!taken.accepted && !refusals_.take(RateLimit::Clock::now())) {
+    ++unrecorded_;
+    return;
+  }
+  std::string why(taken.accepted ? std::string_view() : taken.why);
+  if (!taken.accepted && unrecorded_ > 0) why += fmt::format(" (and {} more refusals)", std::exchange(unrecorded_, 0));
+  audit_.write({visitor_.address, std::string(name_of(visitor_.role)), number_, taken.what, taken.accepted, why});
 }
 
 void WsClient::send(Topic topic, const Message& message) {

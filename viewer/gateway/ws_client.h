@@ -8,7 +8,10 @@
 #include <memory>
 
 #include "viewer/gateway/access.h"
+#include "viewer/gateway/audit.h"
 #include "viewer/gateway/hub.h"
+#include "viewer/gateway/page_stream.h"
+#include "viewer/gateway/rate_limit.h"
 
 namespace insula::gateway {
 
@@ -17,7 +20,7 @@ namespace http = beast::http;
 
 class WsClient final : public Client, public std::enable_shared_from_this<WsClient> {
  public:
-  WsClient(beast::tcp_stream&& stream, Hub& hub, Rights rights);
+  WsClient(PageStream&& stream, Hub& hub, Audit& audit, Visitor visitor);
   /// Answers the upgrade request and starts the exchange. The client exists until its connection ends.
   void start(const http::request<http::string_body>& request);
 
@@ -28,17 +31,22 @@ class WsClient final : public Client, public std::enable_shared_from_this<WsClie
   void read();
   void on_read(beast::error_code error, std::size_t bytes);
   void write();
-  bool within_rate();
+  Hub::Taken take(Bytes message);
+  void record(const Hub::Taken& taken);
 
-  beast::websocket::stream<beast::tcp_stream> ws_;
+  beast::websocket::stream<PageStream> ws_;
   Hub& hub_;
-  Rights rights_;
+  Audit& audit_;
+  Visitor visitor_;
   beast::flat_buffer in_;
   Outbox outbox_;
   Message in_flight_;
   bool open_ = false;
-  double allowance_ = 0;  // number of messages that the page may still send now
-  std::chrono::steady_clock::time_point allowance_at_{};
+  std::uint64_t number_;
+  // Two hands at 60 Hz and some commands, with room; then what persons do by hand; then lines that tell of refusals.
+  RateLimit messages_{500, 500}, actions_{60, 120}, refusals_{2, 20};
+  std::uint64_t unrecorded_ = 0;  // refusals since the last line
+  std::string last_of_many_;
 };
 
 }  // namespace insula::gateway

@@ -2,6 +2,7 @@
 // The WebSocket to the gateway: decodes what comes, reconnects by itself with a growing pause, counts what it refused.
 import * as lcm from './lcm';
 import { pack, unpack } from './protocol';
+import { type OwnMessage, parseRoomMessage, type RoomMessage } from './room/messages';
 
 export interface Handlers {
   frame(m: lcm.RenderFrame): void;
@@ -10,6 +11,7 @@ export interface Handlers {
   haptic(m: lcm.HapticStatus): void;
   devices(m: lcm.DeviceState): void;
   metrics(m: lcm.Metrics): void;
+  room(m: RoomMessage): void;
   state(open: boolean): void;
 }
 
@@ -43,6 +45,11 @@ export class Connection {
 
   sendHand(message: Omit<lcm.HandInput, 'time_us'>): void {
     this.send('HAND_INPUT', lcm.hand_input_t.encode({ time_us: nowUs(), ...message }));
+  }
+
+  /** To the other pages of this station. */
+  sendRoom(message: OwnMessage): void {
+    this.send('ROOM', new TextEncoder().encode(JSON.stringify(message)));
   }
 
   private send(channel: string, payload: Uint8Array): void {
@@ -106,6 +113,10 @@ export class Connection {
         case 'DEVICE_STATE': {
           const m = lcm.device_state_t.decode(payload);
           return () => this.handlers.devices(m);
+        }
+        case 'ROOM': {
+          const m = parseRoomMessage(payload);
+          return m && (() => this.handlers.room(m));
         }
         default:
           return () => undefined;

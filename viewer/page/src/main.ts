@@ -31,6 +31,7 @@ import { Sound } from './sound/sound';
 import { Stage } from './stage';
 import { status, tellPicture } from './status';
 import type { RunGhost } from './replay/run_ghost';
+import { RoomDesk } from './room/desk';
 import { Reading } from './step_data/reading';
 import { ViewModes } from './view_modes';
 import { TakeBack } from './take_back';
@@ -43,10 +44,9 @@ const mayCommand = options.role !== 'observer';
 const stage = new Stage(document.getElementById('view') as HTMLCanvasElement);
 const { canvas, scene, scope } = stage;
 const highlight = new Highlight();
-scene.add(highlight.root);
 const takeBack = new TakeBack();
 const guiding = new Guiding();
-scene.add(guiding.root);
+scene.add(highlight.root, guiding.root);
 const playback = new Playback();
 const reading = new Reading();
 let world: World | null = null;
@@ -93,6 +93,7 @@ const link = new Connection(socketUrl(location.href, options.role), {
     heard.haptic = performance.now();
   },
   devices: () => undefined,
+  room: (m) => room.hear(m),
   state: (open) => {
     status.connected = open;
     if (open) return;
@@ -140,6 +141,7 @@ const hud = new Hud(
   options.role,
   options.quality ?? '',
 );
+const room: RoomDesk = new RoomDesk(stage, hudRoot, () => link, options.role);
 const sound: Sound = new Sound(status.sound, () => hud.sound.show(sound.settings, sound.waits));
 hud.sound.show(sound.settings, sound.waits);
 const headset: Headset = new Headset(stage.renderer, () => modes.setStereo('off'));
@@ -277,6 +279,7 @@ function draw(now: number): void {
   if (presenting)
     headset.render(scene, scope.camera, scope.distance, angle, headsetLines(reading.state?.timers ?? [], spokenTo));
   else stage.render(modes.stereo, angle);
+  room.draw(modes.stereo, presenting, now);
   tellPicture({ presenting, stage, graphics, frames: playback.frames, refused: link.refused });
   status.problems = [...(reading.problem ? [reading.problem] : []), ...(world?.problems ?? [])];
   status.ready = world !== null && playback.frames > 0;

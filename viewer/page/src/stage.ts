@@ -139,9 +139,14 @@ export class Stage {
     return this.renderer.getContext() as WebGL2RenderingContext;
   }
 
+  /** The point of the scene under the pointer; null where there is nothing. */
+  pick(x: number, y: number): THREE.Vector3 | null {
+    return this.lens.pick(x, y, this.canvas.clientWidth, this.canvas.clientHeight);
+  }
+
   /** The point under the pointer becomes the focus. */
   focusAt(x: number, y: number): void {
-    const point = this.lens.pick(x, y, this.canvas.clientWidth, this.canvas.clientHeight);
+    const point = this.pick(x, y);
     if (point) this.scope.focus(point);
   }
 }

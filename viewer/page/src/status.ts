@@ -28,6 +28,9 @@ export const status = {
   apart_mm: null as number | null,
   /** Tools of another run over the field. */
   ghost_tools: 0,
+  /** Strokes over the picture; when the last part of one was sent or heard here, ms since 1970. */
+  strokes: 0,
+  stroke_ms: 0,
   stereo: 'off',
   infrared: false,
   presenting: false,

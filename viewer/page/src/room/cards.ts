@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A card for each station: picture, who, what, how long, and what went wrong.
+import { el, setText } from '../hud/dom';
+import { clockText } from '../hud/state';
+import { text } from '../languages/text';
+import { type Standing, standingOf, type StationView } from './overview';
+
+/** What is said of a station's standing; '': nothing. */
+export function standingText(s: StationView, standing: Standing): string {
+  if (standing === 'away') return text('does not answer: {why}', { why: s.error });
+  if (standing === 'idle') return text('nothing runs');
+  if (standing === 'silent') return text('the engine is silent');
+  if (s.state === 'paused') return text('paused');
+  return '';
+}
+
+export class StationCard {
+  readonly root = el('article', { class: 'station' });
+  private readonly picture = el('img', { alt: '' });
+  private readonly person = el('span', { class: 'person' });
+  private readonly title = el('p', { class: 'title' });
+  private readonly clock = el('time');
+  private readonly standing = el('p', { class: 'standing', role: 'status' });
+  private readonly alarms = el('ul', { class: 'alarms' });
+  private readonly open = el('button', { type: 'button' }, text('Open'));
+  private shownPicture = 0;
+
+  constructor(
+    name: string,
+    private readonly pictureUrl: (number: number) => string,
+    open: () => void,
+  ) {
+    this.picture.hidden = true;
+    this.open.onclick = open;
+    const head = el('header', {}, el('h2', {}, name), this.person, this.clock);
+    this.root.append(el('div', { class: 'frame' }, this.picture), head, this.title, this.standing, this.alarms);
+    this.root.append(this.open);
+  }
+
+  show(s: StationView): void {
+    const standing = standingOf(s);
+    this.root.dataset.standing = standing;
+    if (s.picture !== this.shownPicture) {
+      this.shownPicture = s.picture;
+      this.picture.hidden = s.picture === 0;
+      if (s.picture > 0) this.picture.src = this.pictureUrl(s.picture);
+    }
+    setText(this.person, s.person === '' ? text('guest') : s.person);
+    setText(this.title, s.title);
+    setText(this.clock, standing === 'away' || standing === 'idle' ? '' : clockText(s.timeS));
+    setText(this.standing, standingText(s, standing));
+    const lines = s.alarms.map((a) => `${clockText(a.timeS)} ${a.text}`);
+    if (this.alarms.dataset.lines === lines.join('\n')) return;
+    this.alarms.dataset.lines = lines.join('\n');
+    this.alarms.replaceChildren(...lines.map((l) => el('li', {}, l)));
+  }
+}
