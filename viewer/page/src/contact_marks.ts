@@ -5,13 +5,14 @@ import * as THREE from 'three';
 import { glide } from './glide';
 import { forceLevel } from './hud/state';
 import type { RenderFrame } from './lcm';
+import { hexOf, palette } from './palette';
 
 export const markCount = 6;
 /** 1/s. */
 const fadeRate = 17;
 /** Weaker contacts have no mark, N. */
 export const leastN = 0.01;
-const colours = { good: 0x5fcf92, high: 0xf0b64a, too_much: 0xf2604f };
+const colours = { good: hexOf(palette.good), high: hexOf(palette.high), too_much: hexOf(palette.bad) };
 
 export interface Contact {
   place: THREE.Vector3;

@@ -3,6 +3,7 @@
 import * as THREE from 'three';
 import { BundleFolder, loadBundle } from './bundle';
 import type { Bundle } from './bundle_types';
+import { browserStore } from './browser_store';
 import { Connection, socketUrl } from './connection';
 import { ControllerHands } from './controller_hands';
 import { Expected } from './expected';
@@ -12,6 +13,7 @@ import { listenForHands } from './hand_inputs';
 import { toolInHand } from './hand_tool';
 import { Hands } from './hands';
 import { Headset } from './headset';
+import { keptQuality } from './kept_quality';
 import type { UserCommand } from './hud/commands';
 import { Hud } from './hud/hud';
 import { parseMetrics } from './hud/metrics';
@@ -38,7 +40,7 @@ import { TakeBack } from './take_back';
 import { quaternion, vector, World } from './world';
 import { text } from './languages/text';
 
-const options = parseOptions(location.search);
+const options = parseOptions(location.search, keptQuality(browserStore()));
 const mayDrive = options.role === 'trainee';
 const mayCommand = options.role !== 'observer';
 const stage = new Stage(document.getElementById('view') as HTMLCanvasElement);

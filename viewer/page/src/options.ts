@@ -30,7 +30,8 @@ export interface Options {
   ghost: string;
 }
 
-export function parseOptions(search: string): Options {
+/** keptQuality: holds unless the address asks for another. */
+export function parseOptions(search: string, keptQuality: QualityName | null = null): Options {
   const q = new URLSearchParams(search);
   const role = q.get('role');
   const quality = q.get('quality');
@@ -39,7 +40,7 @@ export function parseOptions(search: string): Options {
   const angle = q.get('angle');
   return {
     role: role === 'instructor' || role === 'observer' ? role : 'trainee',
-    quality: qualityNames.find((name) => name === quality) ?? null,
+    quality: qualityNames.find((name) => name === quality) ?? keptQuality,
     hud: !q.has('nohud'),
     freezeAtS: t !== null && t !== '' && Number.isFinite(Number(t)) ? Number(t) : null,
     stereo: stereo === 'sbs' || stereo === 'anaglyph' || stereo === 'xr' ? stereo : 'off',

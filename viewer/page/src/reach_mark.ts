@@ -4,13 +4,14 @@
 import * as THREE from 'three';
 import type { Sight } from './camera';
 import { millimetres } from './depth_ruler';
+import { hexOf, palette } from './palette';
 import type { Within } from './take_back';
 import { TextSprite } from './text_sprite';
 import { spoken } from './bundle';
 
 /** Farther things have no mark, m. */
 export const markedM = 0.04;
-const colours = { away: 0xf0b64a, near: 0x5fcf92 };
+const colours = { away: hexOf(palette.high), near: hexOf(palette.good) };
 
 export class ReachMark {
   readonly root = new THREE.Group();

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers over the last ten seconds, as curves of one unit in one chart.
+import { palette } from '../palette';
 import { el } from './dom';
 import { significant } from '../languages/numbers';
 import { text } from '../languages/text';
 
 const spanS = 10;
-const colours = ['#7cc4ff', '#f0b64a', '#5fcf92', '#f2604f', '#c79bff', '#e9edf0'];
+const colours = ['#7cc4ff', palette.high, palette.good, palette.bad, '#c79bff', '#e9edf0'];
 
 interface Frame {
   left: number;

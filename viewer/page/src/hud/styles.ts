@@ -7,3 +7,7 @@ import './vitals.css';
 import './instructor.css';
 import './dialogs.css';
 import './narrow.css';
+import { browserStore } from '../browser_store';
+import { applyPalette, keptPalette } from '../palette';
+
+applyPalette(keptPalette(browserStore()));

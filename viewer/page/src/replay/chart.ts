@@ -4,13 +4,14 @@
 import { el } from '../hud/dom';
 import { niceRange } from '../hud/curves';
 import { clockText } from '../hud/state';
+import { palette } from '../palette';
 import type { ReplayClock } from './clock';
 import type { Series } from './timeline';
 import { significant } from '../languages/numbers';
 import { text } from '../languages/text';
 
 const colours = ['#7cc4ff', '#f0b64a', '#c79bff'];
-const markColours: Record<string, string> = { fault: '#f2604f', goal: '#5fcf92', note: '#e9edf0' };
+const markColours: Record<string, string> = { fault: palette.bad, goal: palette.good, note: '#e9edf0' };
 const height = 96;
 /** Marks have the top; below them are the curves. */
 const marksPx = 16;

@@ -5,6 +5,7 @@ import type { Bundle } from '../bundle_types';
 import { toolInHand } from '../hand_tool';
 import { forceLevel } from '../hud/state';
 import { vector } from '../world';
+import { hexOf, palette } from '../palette';
 import type { Moment } from './pictures';
 
 /** Weaker forces have no arrow, N. */
@@ -12,7 +13,7 @@ const leastN = 0.01;
 /** Length of the arrow for one newton, m. */
 const lengthOfNewtonM = 0.012;
 const longestM = 0.03;
-const colours = { good: 0x5fcf92, high: 0xf0b64a, too_much: 0xf2604f };
+const colours = { good: hexOf(palette.good), high: hexOf(palette.high), too_much: hexOf(palette.bad) };
 
 export class ForceArrows {
   readonly root = new THREE.Group();

@@ -62,10 +62,10 @@ export interface Running {
 
 type Json = Record<string, unknown>;
 
-const object = (value: unknown): Json => (typeof value === 'object' && value !== null ? (value as Json) : {});
-const list = (value: unknown): Json[] => (Array.isArray(value) ? value.map(object) : []);
-const text = (value: unknown): string => (typeof value === 'string' ? value : '');
-const number = (value: unknown): number => (typeof value === 'number' && Number.isFinite(value) ? value : 0);
+export const object = (value: unknown): Json => (typeof value === 'object' && value !== null ? (value as Json) : {});
+export const list = (value: unknown): Json[] => (Array.isArray(value) ? value.map(object) : []);
+export const text = (value: unknown): string => (typeof value === 'string' ? value : '');
+export const number = (value: unknown): number => (typeof value === 'number' && Number.isFinite(value) ? value : 0);
 
 export function exercisesOf(json: unknown): Exercise[] {
   return list(json)
@@ -145,7 +145,8 @@ export function runningOf(json: unknown): Running {
 export class Api {
   constructor(private readonly base: URL) {}
 
-  private async ask(path: string, query: Record<string, string> = {}, body?: object): Promise<unknown> {
+  /** For those who ask for more than this class does. */
+  async ask(path: string, query: Record<string, string> = {}, body?: object): Promise<unknown> {
     const url = new URL(`api/${path}`, this.base);
     for (const [name, value] of Object.entries(query)) url.searchParams.set(name, value);
     const address = url.href.replaceAll('+', '%20');

@@ -5,6 +5,8 @@ import type { Api, Exercise, History, Running } from './api';
 import { Cards } from './cards';
 import { People } from './people';
 import { Progress } from './progress';
+import { Recordings } from './recordings';
+import { Settings } from './settings';
 import { languageSelect } from '../languages/language_select';
 import { text } from '../languages/text';
 
@@ -15,6 +17,8 @@ export class StartPage {
   private readonly people: People;
   private readonly cards: Cards;
   private readonly progress: Progress;
+  private readonly recordings: Recordings;
+  private readonly settings = new Settings();
   private readonly say = el('p', { class: 'say', role: 'status' });
   private exercises: Exercise[] = [];
   private history = new Map<string, History>();
@@ -32,6 +36,7 @@ export class StartPage {
       progress: (e) => void this.progress.open(e, this.people.person),
     });
     this.progress = new Progress(api);
+    this.recordings = new Recordings(api);
     root.append(
       el(
         'header',
@@ -43,9 +48,11 @@ export class StartPage {
           text('Aneurysm surgery with two-handed haptics. For training only, never for the care of patients.'),
         ),
         languageSelect(),
+        this.settings.button,
       ),
-      el('main', {}, this.people.root, this.say, this.cards.root),
+      el('main', {}, this.people.root, this.say, this.cards.root, this.recordings.root),
       this.progress.root,
+      this.settings.root,
     );
   }
 
@@ -57,6 +64,7 @@ export class StartPage {
   private async changed(person: string): Promise<void> {
     try {
       this.history = await this.api.history(person);
+      await this.recordings.show(person);
       this.tell('');
     } catch (e) {
       this.history = new Map();
