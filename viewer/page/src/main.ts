@@ -34,6 +34,7 @@ import type { RunGhost } from './replay/run_ghost';
 import { Reading } from './step_data/reading';
 import { ViewModes } from './view_modes';
 import { TakeBack } from './take_back';
+import { Lessons } from './tutor/lessons';
 import { quaternion, vector, World } from './world';
 
 const options = parseOptions(location.search);
@@ -42,10 +43,9 @@ const mayCommand = options.role !== 'observer';
 const stage = new Stage(document.getElementById('view') as HTMLCanvasElement);
 const { canvas, scene, scope } = stage;
 const highlight = new Highlight();
-scene.add(highlight.root);
 const takeBack = new TakeBack();
 const guiding = new Guiding();
-scene.add(guiding.root);
+scene.add(highlight.root, guiding.root);
 const playback = new Playback();
 const reading = new Reading();
 let world: World | null = null;
@@ -157,6 +157,7 @@ const modes: ViewModes = new ViewModes(options, headset, {
   refuse: (why) => hud.refuse(why, performance.now()),
 });
 
+const lessons = new Lessons({ hud, hudRoot, canvas, scene, scope, sound, mayDrive });
 const toolPose = (hand: number) => {
   const t = playback.latest && world ? toolInHand(playback.latest, world.bundle, hand) : null;
   return t ? { p: vector(t.p_m), q: quaternion(t.q) } : null;
@@ -271,6 +272,7 @@ function draw(now: number): void {
     hand: mayDrive && reading.state?.mode === 'practice' ? hands.active : -1,
     axes: scope.axes(),
   });
+  lessons.update(playback.latest, world?.bundle ?? null, reading.state, now);
   const angle = THREE.MathUtils.degToRad(modes.angleDeg);
   if (presenting)
     headset.render(scene, scope.camera, scope.distance, angle, headsetLines(reading.state?.timers ?? [], spokenTo));

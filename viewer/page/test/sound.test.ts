@@ -65,7 +65,7 @@ describe('settings of the sound', () => {
     expect(readSettings(store(null)).on).toBe(false);
     let kept = '';
     const memory = { getItem: () => kept, setItem: (_: string, v: string) => void (kept = v) };
-    const chosen = { on: true, volume: 0.3, groups: { monitor: false, instruments: true, alarms: false } };
+    const chosen = { on: true, volume: 0.3, groups: { monitor: false, instruments: true, alarms: false, hints: true } };
     writeSettings(memory, chosen);
     expect(readSettings(memory)).toEqual(chosen);
   });

@@ -5,8 +5,11 @@ import { spoken } from '../bundle';
 import type { Bundle, CommandData } from '../bundle_types';
 import type { Channels } from '../step_data/channels';
 import { ask, message, numberArgument, sceneCommands, takesNumber, type UserCommand } from './commands';
+import { CausesPanel } from './causes_panel';
 import { ChannelCurves } from './channel_curves';
 import { TimeChart } from './curves';
+import { text as say } from '../languages/text';
+import type { HintView } from '../tutor/state';
 import { el } from './dom';
 import { MetricTable } from './metric_table';
 import type { MetricView } from './metrics';
@@ -17,6 +20,7 @@ export class InstructorPanel {
   readonly root = el('section', { class: 'panel instructor' });
   private readonly forces = new TimeChart('forces of the hands over ten seconds', 'N', ['left', 'right']);
   private readonly curves = new ChannelCurves();
+  private readonly causes = new CausesPanel();
   private readonly metrics = new MetricTable('Metrics until now');
   private readonly commands = el('div', { class: 'commands' });
   /** By component and command, what sets a slider to a value that has been set, by whomever. */
@@ -43,6 +47,8 @@ export class InstructorPanel {
       this.commands,
       el('h2', {}, 'Trainee'),
       form,
+      el('h2', {}, say('What is near its limit')),
+      this.causes.root,
       el('h2', {}, 'Events'),
       this.log,
       el('h2', {}, 'Forces'),
@@ -68,6 +74,10 @@ export class InstructorPanel {
   /** Five times a second. */
   showMetrics(metrics: readonly MetricView[]): void {
     this.metrics.show(metrics);
+  }
+
+  showCauses(causes: readonly HintView[]): void {
+    this.causes.show(causes);
   }
 
   /** forces: of the left and the right hand, N. */

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the engine says of the exercise (hud_json of a frame), read with care: it is text from outside.
 
+import { parseTutor, type TutorView } from '../tutor/state';
+
 export interface TimerView {
   id: string;
   text: string;
@@ -48,6 +50,7 @@ export interface HudState {
   measures: MeasureView[];
   /** Tool in each hand, by id. */
   hands: { hand: string; tool: string }[];
+  tutor: TutorView;
 }
 
 export const finite = (v: unknown): number | null => (typeof v === 'number' && Number.isFinite(v) ? v : null);
@@ -96,6 +99,7 @@ export function parseHud(json: string): HudState | null {
       limit: text(m.limit),
     })),
     hands: list(j.hands).map((h) => ({ hand: text(h.hand), tool: text(h.tool) })),
+    tutor: parseTutor(j.tutor),
   };
 }
 

@@ -6,4 +6,5 @@ import './panels.css';
 import './vitals.css';
 import './instructor.css';
 import './dialogs.css';
+import './tutor.css';
 import './narrow.css';

@@ -10,6 +10,7 @@ import { BleedingVoice } from './voices/bleeding';
 import { click } from './voices/clip';
 import { hit, type Partner } from './voices/contact';
 import { beep } from './voices/heart';
+import { hint } from './voices/hint';
 import { part } from './voices/strand';
 import { type Drawn, SuctionVoice } from './voices/suction';
 
@@ -72,6 +73,10 @@ export class Desk {
     let length = 0;
     this.strike('alarm', arrivedMs, (at) => (length = this.alarm.sound(priority, at)));
     return length;
+  }
+
+  hint(arrivedMs: number): void {
+    this.strike('hint', arrivedMs, (at) => hint(this.place('hint'), at));
   }
 
   /** What lasts ends now. */

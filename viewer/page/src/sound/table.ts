@@ -4,16 +4,17 @@
 import type { ChannelData, DrawableData, MaterialData } from '../step_data/declarations';
 
 /** What can be switched on and off by itself. */
-export const groups = ['monitor', 'instruments', 'alarms'] as const;
+export const groups = ['monitor', 'instruments', 'alarms', 'hints'] as const;
 export type Group = (typeof groups)[number];
 
 export const groupNames: Record<Group, { short: string; whole: string }> = {
   monitor: { short: 'Monitor', whole: 'patient monitor' },
   instruments: { short: 'Instruments', whole: 'instruments and field' },
   alarms: { short: 'Alarms', whole: 'alarms' },
+  hints: { short: 'Hints', whole: 'hints of the tutor' },
 };
 
-export type Voice = 'heart' | 'clip' | 'strand' | 'contact' | 'drop' | 'suction' | 'alarm';
+export type Voice = 'heart' | 'clip' | 'strand' | 'contact' | 'drop' | 'suction' | 'alarm' | 'hint';
 
 /** A voice's group, and how many of it may begin within a stretch of time. */
 export const voices: Record<Voice, { group: Group; most: number; withinS: number }> = {
@@ -24,6 +25,7 @@ export const voices: Record<Voice, { group: Group; most: number; withinS: number
   drop: { group: 'instruments', most: 6, withinS: 0.25 },
   suction: { group: 'instruments', most: 8, withinS: 0.25 },
   alarm: { group: 'alarms', most: 2, withinS: 1 },
+  hint: { group: 'hints', most: 1, withinS: 1 },
 };
 
 export type Parting = 'cut' | 'torn';
