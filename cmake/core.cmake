@@ -76,7 +76,8 @@ insula_room(model USES base xml
   LIBS EXPAT::EXPAT PkgConfig::ASSIMP PkgConfig::URDFDOM nlohmann_json::nlohmann_json ZLIB::ZLIB fmt::fmt)
 insula_room(collision USES base linalg model)
 insula_room(mechanics USES base params registry linalg constraint model collision LIBS fmt::fmt)
-insula_room(sim USES base params registry scene linalg constraint collision mechanics LIBS fmt::fmt spdlog::spdlog)
+insula_room(sim USES base xml params registry scene linalg constraint collision mechanics
+  LIBS nlohmann_json::nlohmann_json fmt::fmt spdlog::spdlog)
 
 add_library(insula_core STATIC ${insula_core_objects})
 add_dependencies(insula_core insula_headers_hash)

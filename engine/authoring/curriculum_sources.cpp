@@ -7,9 +7,9 @@
 #include "core/base/text.h"
 #include "core/scene/loader.h"
 #include "core/sim/complications.h"
+#include "core/sim/reference_bands.h"
 #include "core/sim/settings.h"
 #include "core/sim/simulation.h"
-#include "engine/reports/reference_bands.h"
 
 namespace insula {
 namespace {

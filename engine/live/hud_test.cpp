@@ -114,7 +114,36 @@ TEST(Hud, HasTheSameKeysWithoutAnExercise) {
   for (const char* key : {"goals", "faults", "timers", "measures", "hands"}) EXPECT_TRUE(j.at(key).is_array()) << key;
   for (const char* key : {"message", "state", "elapsed_s", "mode", "report", "recording", "unrecorded"})
     EXPECT_TRUE(j.contains(key)) << key;
-  EXPECT_EQ(j.size(), 12u);
+  EXPECT_TRUE(j.at("tutor").at("cue").is_null());
+  EXPECT_TRUE(j.at("tutor").at("causes").is_array());
+  EXPECT_EQ(j.size(), 13u);
+}
+
+TEST(Hud, SendsTheLastCueOfTheTutorButNotInATest) {
+  const Registry r = registry();
+  auto loaded = load_simulation_text(
+      R"(<scene time_step="10 ms"><patient id="p"/><exercise id="e" title="E"><clocks/><tutor/>
+         <hint_channel id="lower" text="Lower it" channel="p.pressure" limit="80 mmHg" at="left"/></exercise></scene>)",
+      "/s.xml", r, 1);
+  ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
+  for (int k = 0; k < 3; ++k) loaded.simulation->step();
+  const auto tutor = [&](SessionMode mode) {
+    return Json::parse(hud_json(*loaded.simulation, {.mode = mode})).at("tutor");
+  };
+  const Json practice = tutor(SessionMode::practice);
+  EXPECT_EQ(practice.at("cue").at("text"), "Lower it");
+  EXPECT_EQ(practice.at("cue").at("hand"), "left");
+  EXPECT_EQ(practice.at("cue").at("watched"), "p.pressure");
+  EXPECT_EQ(practice.at("cue").at("value"), "100.00 mmHg");
+  EXPECT_EQ(practice.at("cue").at("limit"), "80.00 mmHg");
+  EXPECT_TRUE(practice.at("cues").empty()) << "the whole list comes after the end";
+  const Json test = tutor(SessionMode::test);
+  EXPECT_TRUE(test.at("cue").is_null());
+  ASSERT_EQ(test.at("causes").size(), 1u) << "the instructor sees them";
+  EXPECT_EQ(test.at("causes").at(0).at("share"), 1.25);
+  Exercise& exercise = *loaded.simulation->exercise();
+  exercise.log().fail("over", 1);
+  EXPECT_EQ(tutor(SessionMode::test).at("cues").size(), 1u) << "why it came can be read afterwards";
 }
 
 TEST(Frame, CarriesChannelsAndDrawables) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/sim/exercise.h"
+#include "core/sim/tutor.h"
 
 namespace insula {
 
@@ -19,11 +20,14 @@ struct ExerciseOutcome {
         text(exercise.text()),
         log(exercise.log()),
         metrics(exercise.metrics()),
-        has_guide(std::ranges::any_of(exercise.motions(), [](const MotionEntry* m) { return m->guide(); })) {}
+        has_guide(std::ranges::any_of(exercise.motions(), [](const MotionEntry* m) { return m->guide(); })) {
+    if (const GivesCues* tutor = tutor_of(exercise)) cues = tutor->cues();
+  }
   std::string id, title, text;
   ExerciseLog log;
   std::vector<MetricValue> metrics;
-  bool has_guide;  ///< practice shows targets
+  bool has_guide;         ///< practice shows targets
+  std::vector<Cue> cues;  ///< of the tutor, in order
 };
 
 /// "running", "done" or "failed".

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/sim/metric.h"
-#include "engine/reports/reference_bands.h"
+#include "core/sim/reference_bands.h"
 
 namespace insula {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where a run lies among a group: the side that counts, the order, and files that are none.
-#include "engine/reports/reference_bands.h"
+#include "core/sim/reference_bands.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/live/session_mode.h"
+#include "engine/reports/hints_report.h"
 #include "engine/reports/metrics_report.h"
 #include "engine/reports/perceptible_forces.h"
 #include "engine/reports/report_writer.h"
@@ -320,8 +322,9 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   if (!recorder.finite())
     out += "<p class=\"bad\">The simulation lost its numbers (not finite): nothing below can be relied upon.</p>\n";
   if (summary.exercise)
-    out += exercise_part(*summary.exercise) + review_html(review_of(recorder, summary)) +
-           metrics_html(summary.exercise->metrics);
+    out += exercise_part(*summary.exercise) +
+           cues_html(summary.exercise->cues, summary.mode != name_of(SessionMode::test)) +
+           review_html(review_of(recorder, summary)) + metrics_html(summary.exercise->metrics);
   out += recorder.forces().html() + recorder.channels().html() + recorder.outcome().html();
   if (summary.complications) out += complications_html(*summary.complications);
   out += run_part(recorder, summary, simulated_seconds(recorder));

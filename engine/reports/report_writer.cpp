@@ -13,6 +13,7 @@
 
 #include "core/base/input_error.h"
 #include "core/sim/simulation.h"
+#include "engine/reports/hints_report.h"
 #include "engine/reports/metrics_report.h"
 #include "engine/reports/perceptible_forces.h"
 
@@ -258,6 +259,7 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
                      {{"left", perceptible_json(perceptible_forces(recorder, 0))},
                       {"right", perceptible_json(perceptible_forces(recorder, 1))}}}};
   json["exercise"] = exercise_json(summary.exercise);
+  json["hints"] = cues_json(summary.exercise ? summary.exercise->cues : std::vector<Cue>{});
   json["metrics"] = metrics_json(summary.exercise ? summary.exercise->metrics : std::vector<MetricValue>{});
   if (summary.exercise) {
     add_bands(json["metrics"], summary.exercise->metrics, summary.bands);

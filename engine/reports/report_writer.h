@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "core/sim/exercise.h"
+#include "core/sim/reference_bands.h"
 #include "core/sim/report.h"
 #include "engine/reports/channel_record.h"
 #include "engine/reports/exercise_outcome.h"
 #include "engine/reports/force_record.h"
 #include "engine/reports/metric_moments.h"
 #include "engine/reports/own_runs.h"
-#include "engine/reports/reference_bands.h"
 #include "engine/reports/review.h"
 #include "engine/reports/run_outcome.h"
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/sim/metric.h"
+#include "core/sim/reference_bands.h"
 #include "engine/reports/metric_moments.h"
 #include "engine/reports/own_runs.h"
-#include "engine/reports/reference_bands.h"
 
 namespace insula {
 

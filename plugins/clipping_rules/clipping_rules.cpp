@@ -30,6 +30,7 @@ Sources: Sindou, Acevedo, Turjman 1998 (grades); neck_judge.h describes the geom
 #include "core/registry/registry.h"
 #include "core/sim/exercise.h"
 #include "core/sim/simulation.h"
+#include "core/sim/watched_limit.h"
 #include "plugins/blood_flow/vessel_state.h"
 #include "plugins/clipping_rules/neck_judge.h"
 
@@ -292,7 +293,7 @@ class GoalClipped final : public ExerciseRule {
   int min_applications_ = 1;
 };
 
-class FaultStenosis final : public ExerciseRule {
+class FaultStenosis final : public ExerciseRule, public WatchesLimits {
  public:
   Param<std::string> text{
       this, {.name = "text", .fallback = "A branch is closed by the clip", .doc = "what the trainee is told"}};
@@ -315,10 +316,16 @@ class FaultStenosis final : public ExerciseRule {
     const auto* vessel = dynamic_cast<const ShellBody*>(&*on);
     if (!vessel) return error(context, on, "needs a shell_body with a vessel");
     names_ = vessel_names(context, *this, branches, *vessel);
+    for (const ChannelEntry& e : simulation.channels().entries())
+      if (e.channel->spec().name == "flow_share" &&
+          std::find(names_.begin(), names_.end(), e.group()) != names_.end() && limit() > 0)
+        flows_.push_back({e.channel, e.item, e.component, limit(), false, -1});
     reset();
   }
+  std::vector<WatchedLimit> watched_limits() const override { return flows_; }
+  bool watches_now() const override { return !temporary_; }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    const bool temporary = temporary_on(clips_.now());
+    const bool temporary = temporary_ = temporary_on(clips_.now());
     const std::vector<VesselState>& vessels = vessels_.now();
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const VesselState* b = find(vessels, names_[i]);
@@ -336,6 +343,7 @@ class FaultStenosis final : public ExerciseRule {
     below_.assign(names_.size(), 0.0);
     above_.assign(names_.size(), 0.0);
     armed_.assign(names_.size(), 1);
+    temporary_ = false;
   }
 
  private:
@@ -343,6 +351,8 @@ class FaultStenosis final : public ExerciseRule {
   Vessels vessels_;
   int fault_ = 0;
   std::vector<std::string> names_;
+  std::vector<WatchedLimit> flows_;    ///< of the branches
+  bool temporary_ = false;             ///< a temporary clip is on
   std::vector<double> below_, above_;  ///< for how long flow has been below the limit, and not, s
   std::vector<char> armed_;
 };

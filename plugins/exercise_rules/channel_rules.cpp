@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/params/number.h"
 #include "core/registry/registry.h"
+#include "core/sim/watched_limit.h"
 #include "plugins/exercise_rules/register.h"
 
 namespace insula {
@@ -102,7 +103,7 @@ class GoalChannel final : public ExerciseRule {
   double held_ = 0;
 };
 
-class FaultChannel final : public ExerciseRule {
+class FaultChannel final : public ExerciseRule, public WatchesLimits {
  public:
   Param<std::string> text{this, {.name = "text", .doc = "what the trainee is told"}};
   Param<std::string> channel{this, {.name = "channel", .doc = "component and channel: \"suture.tension\""}};
@@ -128,6 +129,11 @@ class FaultChannel final : public ExerciseRule {
       log.fault(fault_, r.time, value);
     }
     if (watch_.back(value, comparison_of(comparison))) armed_ = true;
+  }
+  std::vector<WatchedLimit> watched_limits() const override {
+    const ChannelEntry* e = watch_.entry();
+    if (!e || e->size() != 1 || watch_.limit() == 0) return {};
+    return {{e->channel, e->item, e->component, watch_.limit(), comparison.is("above"), -1}};
   }
   void reset() override {
     lasted_ = 0;

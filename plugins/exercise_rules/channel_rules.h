@@ -23,6 +23,7 @@ class ChannelWatch {
   bool find(PrepareContext& context, const Simulation& simulation, const Component& rule,
             const Param<std::string>& channel);
   const ChannelEntry* entry() const { return entry_; }  ///< null: not found
+  double limit() const { return limit_; }               ///< SI
   /// The present value of the channel, or the length of a vector. NaN: not known.
   double value(const StepReport& report) const;
   /// Whether the value is beyond the limit. An unknown value is not.

@@ -11,12 +11,14 @@ force has fallen below nine tenths of the limit. An order fault counts a strand 
 while more than the allowed number of strands nearer to the surface remained.
 */
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/text.h"
 #include "core/registry/registry.h"
 #include "core/sim/exercise.h"
 #include "core/sim/simulation.h"
+#include "core/sim/watched_limit.h"
 #include "plugins/exercise_rules/register.h"
 #include "plugins/strand_springs/strand_set.h"
 
@@ -136,7 +138,7 @@ class GoalOpening final : public ExerciseRule {
   double open_ = 0, widest_ = 0;
 };
 
-class FaultForce final : public ExerciseRule {
+class FaultForce final : public ExerciseRule, public WatchesLimits {
  public:
   Param<std::string> text{
       this, {.name = "text", .fallback = "Too much force on the brain", .doc = "what the trainee is told"}};
@@ -150,6 +152,15 @@ class FaultForce final : public ExerciseRule {
   Param<Duration> grace{
       this, {.name = "grace", .fallback = "100 ms", .min = "0 s", .max = "10 s", .doc = "shorter peaks are forgiven"}};
 
+  ChannelGroup<Force> force{this,
+                            {.name = "force",
+                             .doc = "of the hand, the largest on one of the bodies",
+                             .min = "0 N",
+                             .shown = Shown::none,
+                             .display = "mN",
+                             .digits = 0}};
+
+  void prepare(PrepareContext&) override { force.declare({"left", "right"}); }
   void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
     fault_ = log.add_fault(id, text());
     const auto& structures = simulation.report().structures;
@@ -164,8 +175,10 @@ class FaultForce final : public ExerciseRule {
     reset();
   }
   void observe(const StepReport& r, ExerciseLog& log) override {
+    std::array<double, 2> largest{};
     for (std::size_t k = 0; k < watch_.size(); ++k) {
       const double f = r.structures[structure_[k / 2]].of_hand[k % 2].norm();
+      largest[k % 2] = std::max(largest[k % 2], f);
       Watch& w = watch_[k];
       w.above = f > limit() ? w.above + r.h : 0;
       if (w.above > grace() && w.armed) {
@@ -174,8 +187,17 @@ class FaultForce final : public ExerciseRule {
       }
       if (f < 0.9 * limit()) w.armed = true;
     }
+    for (std::size_t hand = 0; hand < 2; ++hand) force.set(hand, largest[hand]);
   }
-  void reset() override { watch_.assign(2 * structure_.size(), {}); }
+  std::vector<WatchedLimit> watched_limits() const override {
+    std::vector<WatchedLimit> out;
+    for (int hand = 0; hand < 2; ++hand) out.push_back({&force, std::size_t(hand), this, limit(), true, hand});
+    return out;
+  }
+  void reset() override {
+    watch_.assign(2 * structure_.size(), {});
+    force.reset();
+  }
 
  private:
   struct Watch {

@@ -26,6 +26,7 @@ cumulative sum with hysteresis (E. Page, Continuous inspection schemes, Biometri
 #include "core/registry/registry.h"
 #include "core/sim/exercise.h"
 #include "core/sim/simulation.h"
+#include "core/sim/watched_limit.h"
 #include "plugins/bleeding/bleeding_state.h"
 #include "plugins/clip/clip_state.h"
 
@@ -141,7 +142,18 @@ class GoalBleedingStopped final : public ExerciseRule {
   Running running_;
 };
 
-class TimerRupture final : public ExerciseRule {
+/// What a clock shows.
+struct Elapsed : Channel<Duration> {
+  explicit Elapsed(Component* owner)
+      : Channel(owner, {.name = "elapsed",
+                        .doc = "time on the clock",
+                        .min = "0 s",
+                        .shown = Shown::none,
+                        .display = "s",
+                        .digits = 0}) {}
+};
+
+class TimerRupture final : public ExerciseRule, public WatchesLimits {
  public:
   Param<std::string> text{
       this, {.name = "text", .fallback = "From rupture to the final clip", .doc = "what the clock is called"}};
@@ -156,21 +168,30 @@ class TimerRupture final : public ExerciseRule {
                          .max = "7200 s",
                          .doc = "time until the exercise has failed"}};
   StoppedRate rate{this};
+
+  Elapsed elapsed{this};
+
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
     patient_ = Patient(simulation);
     timer_ = log.add_timer(id, text(), limit());
   }
+  std::vector<WatchedLimit> watched_limits() const override { return {{&elapsed, 0, this, limit(), true, -1}}; }
+  bool watches_now() const override { return runs_; }
   void observe(const StepReport& r, ExerciseLog& log) override {
     const double since = patient_.ruptured_at();
     const bool runs = running_.observe(r.h, patient_.bleeding_rate(), rate());
     if (since < 0) return;
     const bool mastered = patient_.permanent_released() && !patient_.temporary_on() && !runs;
+    runs_ = !mastered;
     if (!mastered) elapsed_ = r.time - since;
+    elapsed.set(elapsed_);
     log.timer(timer_, elapsed_, !mastered);
     if (elapsed_ > limit()) log.fail(over(), r.time);
   }
   void reset() override {
     elapsed_ = 0;
+    elapsed.reset();
+    runs_ = false;
     running_ = {};
   }
 
@@ -178,10 +199,11 @@ class TimerRupture final : public ExerciseRule {
   Patient patient_;
   int timer_ = 0;
   double elapsed_ = 0;
+  bool runs_ = false;
   Running running_;
 };
 
-class TimerTemporaryClip final : public ExerciseRule {
+class TimerTemporaryClip final : public ExerciseRule, public WatchesLimits {
  public:
   Param<std::string> text{this, {.name = "text", .fallback = "Temporary clip", .doc = "what the clock is called"}};
   Param<std::string> over{this,
@@ -194,6 +216,9 @@ class TimerTemporaryClip final : public ExerciseRule {
                          .min = "1 s",
                          .max = "3600 s",
                          .doc = "longest occlusion without a fault"}};
+
+  Elapsed elapsed{this};
+
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
     patient_ = Patient(simulation);
     timer_ = log.add_timer(id, text(), limit());
@@ -202,6 +227,7 @@ class TimerTemporaryClip final : public ExerciseRule {
   void observe(const StepReport& r, ExerciseLog& log) override {
     const bool on = patient_.temporary_on();
     elapsed_ = on ? elapsed_ + r.h : 0;
+    elapsed.set(elapsed_);
     log.timer(timer_, elapsed_, on);
     if (!on) warned_ = false;
     if (elapsed_ > limit() && !warned_) {
@@ -209,8 +235,10 @@ class TimerTemporaryClip final : public ExerciseRule {
       log.fault(fault_, r.time, elapsed_);
     }
   }
+  std::vector<WatchedLimit> watched_limits() const override { return {{&elapsed, 0, this, limit(), true, -1}}; }
   void reset() override {
     elapsed_ = 0;
+    elapsed.reset();
     warned_ = false;
   }
 

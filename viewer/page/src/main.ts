@@ -37,6 +37,7 @@ import { RoomDesk } from './room/desk';
 import { Reading } from './step_data/reading';
 import { ViewModes } from './view_modes';
 import { TakeBack } from './take_back';
+import { Lessons } from './tutor/lessons';
 import { quaternion, vector, World } from './world';
 import { text } from './languages/text';
 
@@ -162,6 +163,7 @@ const modes: ViewModes = new ViewModes(options, headset, {
   refuse: (why) => hud.refuse(why, performance.now()),
 });
 
+const lessons = new Lessons({ hud, hudRoot, canvas, scene, scope, sound, mayDrive });
 const toolPose = (hand: number) => {
   const t = playback.latest && world ? toolInHand(playback.latest, world.bundle, hand) : null;
   return t ? { p: vector(t.p_m), q: quaternion(t.q) } : null;
@@ -277,6 +279,7 @@ function draw(now: number): void {
     hand: mayDrive && reading.state?.mode === 'practice' ? hands.active : -1,
     axes: scope.axes(),
   });
+  lessons.update(playback.latest, world?.bundle ?? null, reading.state, now);
   const angle = THREE.MathUtils.degToRad(modes.angleDeg);
   if (presenting)
     headset.render(scene, scope.camera, scope.distance, angle, headsetLines(reading.state?.timers ?? [], spokenTo));

@@ -42,6 +42,10 @@ export const status = {
     [false, false],
     [false, false],
   ],
+  /** Hint that is shown; '': none. */
+  cue: '',
+  /** Step of the tour that is shown; '': none. */
+  tour: '',
   /** Of the active hand's target: which, and how far; null: none is shown. */
   target: null as { at: number; of: number; distance_m: number; angle_rad: number } | null,
 };

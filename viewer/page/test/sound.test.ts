@@ -70,7 +70,7 @@ describe('settings of the sound', () => {
     const chosen = {
       on: true,
       volume: 0.3,
-      groups: { monitor: false, instruments: true, doppler: false, alarms: false },
+      groups: { monitor: false, instruments: true, doppler: false, alarms: false, hints: true },
     };
     writeSettings(memory, chosen);
     expect(readSettings(memory)).toEqual(chosen);

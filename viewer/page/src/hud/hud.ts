@@ -71,6 +71,8 @@ export class Hud {
   readonly view: ViewMenu;
   readonly sound: SoundPanel;
   readonly toolList: ToolList;
+  /** Below the controls of the hands. */
+  readonly beside = el('div', { class: 'beside' });
   private readonly vitals = new Vitals();
   private readonly exercise = new ExercisePanel();
   private readonly toasts = new Toasts();
@@ -125,6 +127,7 @@ export class Hud {
       this.makeControls(actions),
       this.view.root,
       this.sound.root,
+      this.beside,
     );
     const warning = el('span', { class: 'warn' }, text('For training only. Not for patient care.'));
     const notices = el('div', { class: 'notices' }, this.notice.root, this.problems.root);
@@ -205,6 +208,7 @@ export class Hud {
     this.toolList.show(frame.tool);
     const stowed = this.stowed(frame);
     this.vitals.show(channels, stowed, frame.sim_time_s);
+    this.instructor?.showCauses(state?.tutor.causes ?? []);
     this.instructor?.show(channels, stowed, forces, frame.sim_time_s);
     this.pause.dataset.paused = frame.paused ? '1' : '';
     setText(this.pause, frame.paused ? text('Resume') : text('Pause'));
@@ -220,6 +224,8 @@ export class Hud {
   showEvent(e: SimEvent, nowMs: number): void {
     this.instructor?.addEvent(e.sim_time_s, e.kind, e.id, e.text);
     if (e.kind === 'reset') for (const h of this.hands) h.tray.forget();
+    // The tutor's line says hints, and not in a test.
+    if (e.kind === 'hint') return;
     // What chance or the instructor brings, the trainee sees in the field and not in words.
     if (e.kind === 'command' || e.kind === 'complication' || e.kind === 'read') return;
     if (e.kind === 'refused') {

@@ -5,8 +5,10 @@ import { spoken } from '../bundle';
 import type { Bundle, CommandData } from '../bundle_types';
 import type { Channels } from '../step_data/channels';
 import { ask, message, numberArgument, sceneCommands, takesNumber, type UserCommand } from './commands';
+import { CausesPanel } from './causes_panel';
 import { ChannelCurves } from './channel_curves';
 import { TimeChart } from './curves';
+import type { HintView } from '../tutor/state';
 import { el } from './dom';
 import { MetricTable } from './metric_table';
 import type { MetricView } from './metrics';
@@ -23,6 +25,7 @@ export class InstructorPanel {
     text('right'),
   ]);
   private readonly curves = new ChannelCurves();
+  private readonly causes = new CausesPanel();
   private readonly metrics = new MetricTable(text('Metrics until now'));
   private readonly commands = el('div', { class: 'commands' });
   /** By component and command, what sets a slider to a value that has been set, by whomever. */
@@ -49,6 +52,8 @@ export class InstructorPanel {
       this.commands,
       el('h2', {}, text('Trainee')),
       form,
+      el('h2', {}, text('What is near its limit')),
+      this.causes.root,
       el('h2', {}, text('Events')),
       this.log,
       el('h2', {}, text('Forces')),
@@ -74,6 +79,10 @@ export class InstructorPanel {
   /** Five times a second. */
   showMetrics(metrics: readonly MetricView[]): void {
     this.metrics.show(metrics);
+  }
+
+  showCauses(causes: readonly HintView[]): void {
+    this.causes.show(causes);
   }
 
   /** forces: of the left and the right hand, N. */

@@ -3,6 +3,8 @@
 import { fixed } from '../languages/numbers';
 import { said } from '../languages/said';
 
+import { parseTutor, type TutorView } from '../tutor/state';
+
 export interface TimerView {
   id: string;
   text: string;
@@ -50,6 +52,7 @@ export interface HudState {
   measures: MeasureView[];
   /** Tool in each hand, by id. */
   hands: { hand: string; tool: string }[];
+  tutor: TutorView;
 }
 
 export const finite = (v: unknown): number | null => (typeof v === 'number' && Number.isFinite(v) ? v : null);
@@ -98,6 +101,7 @@ export function parseHud(json: string): HudState | null {
       limit: said(text(m.limit)),
     })),
     hands: list(j.hands).map((h) => ({ hand: text(h.hand), tool: text(h.tool) })),
+    tutor: parseTutor(j.tutor),
   };
 }
 

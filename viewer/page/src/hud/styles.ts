@@ -6,6 +6,7 @@ import './panels.css';
 import './vitals.css';
 import './instructor.css';
 import './dialogs.css';
+import './tutor.css';
 import './narrow.css';
 import { browserStore } from '../browser_store';
 import { applyPalette, keptPalette } from '../palette';

@@ -2,6 +2,7 @@
 // What a trainee reads at the end: goals reached, each fault with its times and what to do, measures beside their
 // limits, clocks, and where the report is. Good and bad have a sign and a word beside their colour.
 import { el } from './dom';
+import { hintList } from './hint_list';
 import { MetricTable } from './metric_table';
 import type { MetricView } from './metrics';
 import { valueText } from './progress';
@@ -103,6 +104,7 @@ export function summaryOf(s: HudState, metrics: readonly MetricView[]): HTMLElem
       text('Faults'),
       made.length > 0 ? made.map(faultRow) : [el('li', { 'data-good': '1' }, `${yes} ${text('none')}`)],
     ),
+    ...hintList(s.tutor.cues, s.mode !== 'test'),
     ...part(text('Measures'), s.measures.filter((m) => Number.isFinite(m.value)).map(measureRow)),
     ...part(
       text('Clocks'),

@@ -11,6 +11,7 @@ import { click } from './voices/clip';
 import { hit, type Partner } from './voices/contact';
 import { DopplerVoice, type Flow, timbreOf } from './voices/doppler';
 import { beep } from './voices/heart';
+import { hint } from './voices/hint';
 import { part } from './voices/strand';
 import { type Drawn, SuctionVoice } from './voices/suction';
 
@@ -83,6 +84,10 @@ export class Desk {
     let length = 0;
     this.strike('alarm', arrivedMs, (at) => (length = this.alarm.sound(priority, at)));
     return length;
+  }
+
+  hint(arrivedMs: number): void {
+    this.strike('hint', arrivedMs, (at) => hint(this.place('hint'), at));
   }
 
   /** What lasts ends now. */

@@ -13,7 +13,7 @@ export interface SoundSettings {
 export const defaultSettings = (): SoundSettings => ({
   on: false,
   volume: 0.7,
-  groups: { monitor: true, instruments: true, doppler: true, alarms: true },
+  groups: { monitor: true, instruments: true, doppler: true, alarms: true, hints: true },
 });
 
 const key = 'insula.sound';

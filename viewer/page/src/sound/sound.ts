@@ -44,6 +44,11 @@ export class Sound {
     if (this.sounds) this.listener?.frame(m, this.desk!, arrivedMs);
   }
 
+  /** A hint is given. */
+  hint(nowMs: number): void {
+    if (this.sounds) this.desk!.hint(nowMs);
+  }
+
   clocks(timers: readonly TimerView[]): void {
     this.listener?.clocks(timers);
   }

@@ -5,7 +5,7 @@ import type { ChannelData, DrawableData, MaterialData } from '../step_data/decla
 import { text } from '../languages/text';
 
 /** What can be switched on and off by itself. */
-export const groups = ['monitor', 'instruments', 'doppler', 'alarms'] as const;
+export const groups = ['monitor', 'instruments', 'doppler', 'alarms', 'hints'] as const;
 export type Group = (typeof groups)[number];
 
 export const groupNames: Record<Group, { short: string; whole: string }> = {
@@ -13,9 +13,10 @@ export const groupNames: Record<Group, { short: string; whole: string }> = {
   instruments: { short: text('Instruments'), whole: text('sounds of instruments and field') },
   doppler: { short: text('Doppler'), whole: text('sounds of the Doppler probe') },
   alarms: { short: text('Alarms'), whole: text('sounds of alarms') },
+  hints: { short: text('Hints'), whole: text('sounds of hints') },
 };
 
-export type Voice = 'heart' | 'clip' | 'strand' | 'contact' | 'drop' | 'suction' | 'doppler' | 'alarm';
+export type Voice = 'heart' | 'clip' | 'strand' | 'contact' | 'drop' | 'suction' | 'doppler' | 'alarm' | 'hint';
 
 /** A voice's group, and how many of it may begin within a stretch of time. */
 export const voices: Record<Voice, { group: Group; most: number; withinS: number }> = {
@@ -27,6 +28,7 @@ export const voices: Record<Voice, { group: Group; most: number; withinS: number
   suction: { group: 'instruments', most: 8, withinS: 0.25 },
   doppler: { group: 'doppler', most: 4, withinS: 0.25 },
   alarm: { group: 'alarms', most: 2, withinS: 1 },
+  hint: { group: 'hints', most: 1, withinS: 1 },
 };
 
 /** What parts: a strand by an edge or by a pull, or a vessel with its blood. */

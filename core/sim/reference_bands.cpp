@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/reports/reference_bands.h"
+#include "core/sim/reference_bands.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,14 +74,22 @@ const ReferenceBand* ReferenceBands::find(const MetricValue& metric) const {
   return it == bands_.end() || it->second.unit != metric.unit ? nullptr : &it->second;
 }
 
+const ReferenceBand* ReferenceBands::of(const std::string& metric, const std::string& hand) const {
+  const auto it = bands_.find({metric, hand});
+  return it == bands_.end() ? nullptr : &it->second;
+}
+
+double band_width(const ReferenceBand& band) {
+  // Sessions that are all alike have no width: a twentieth of the median then, or one unit about zero.
+  const double least = band.median != 0 ? 0.05 * std::abs(band.median) : 1;
+  return std::max(band.high - band.low, least);
+}
+
 double beyond_band(const MetricValue& metric, const ReferenceBand& band) {
   if (!metric.known) return 0;
   const double above = metric.better == Better::high ? 0 : metric.value - band.high;
   const double below = metric.better == Better::low ? 0 : band.low - metric.value;
-  const double away = std::max({above, below, 0.0});
-  // Sessions that are all alike have no width: a twentieth of the median then, or one unit about zero.
-  const double least = band.median != 0 ? 0.05 * std::abs(band.median) : 1;
-  return away / std::max(band.high - band.low, least);
+  return std::max({above, below, 0.0}) / band_width(band);
 }
 
 std::vector<const MetricValue*> to_work_on(const std::vector<MetricValue>& metrics, const ReferenceBands& bands,

@@ -32,6 +32,8 @@ class ReferenceBands {
   std::size_t sessions() const { return sessions_; }  ///< in the group
   /// The band of a metric, if there is one in its unit.
   const ReferenceBand* find(const MetricValue& metric) const;
+  /// The band of a metric and hand ("left", "right", "both"), whatever its unit; null: none.
+  const ReferenceBand* of(const std::string& metric, const std::string& hand) const;
 
  private:
   std::string title_, group_;
@@ -45,6 +47,10 @@ ReferenceBands bands_for(const std::filesystem::path& file, const std::string& g
 
 /// The bands beside a scene, NAME_bands.json; empty if there are none.
 std::filesystem::path bands_beside(const std::filesystem::path& scene);
+
+/// What a distance from the band is measured in: its width, or a twentieth of the median, or one unit. In the metric's
+/// unit.
+double band_width(const ReferenceBand& band);
 
 /// How far a value lies beyond the middle half on the side that shows less skill, in widths of the half; 0: not beyond.
 /// A metric without a better side counts on both.

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The words of a cue over the field, with the value that came near its limit.
+import { el, setText } from '../hud/dom';
+import { text } from '../languages/text';
+import type { HintView } from './state';
+
+/** "brain_force.left.force: 160 mN of 200 mN" */
+export const whyText = (h: Pick<HintView, 'watched' | 'value' | 'limit'>): string =>
+  text('{watched}: {value}, limit {limit}', { watched: h.watched, value: h.value, limit: h.limit });
+
+export class CueLine {
+  readonly root = el('div', { class: 'cue', role: 'status', 'aria-live': 'assertive' });
+  private readonly who = el('b');
+  private readonly words = el('span');
+  private readonly why = el('small');
+
+  constructor() {
+    this.root.append(this.who, this.words, this.why);
+    this.root.hidden = true;
+  }
+
+  /** null: nothing is said. */
+  show(cue: HintView | null): void {
+    this.root.hidden = cue === null;
+    if (!cue) return;
+    const hands = [text('Left hand'), text('Right hand')];
+    setText(this.who, hands[cue.hand] ?? text('Hint'));
+    setText(this.words, cue.text);
+    setText(this.why, whyText(cue));
+    this.root.dataset.hint = cue.id;
+  }
+}

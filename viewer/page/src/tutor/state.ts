@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the engine's tutor says (tutor of hud_json), read with care: it is text from outside.
+
+/** A hint with the value that came near its limit. */
+export interface HintView {
+  id: string;
+  text: string;
+  /** Whose tool is meant: 0 left, 1 right; -1: none. */
+  hand: number;
+  /** Channel or metric, its value and the limit, with units. */
+  watched: string;
+  value: string;
+  limit: string;
+  /** Of the way to the limit; 1: at the limit. */
+  share: number;
+  holds: boolean;
+  /** When it was said, simulated; null: it was not. */
+  timeS: number | null;
+}
+
+export interface TutorView {
+  /** The last cue; null: none, or this is a test. */
+  cue: HintView | null;
+  /** What is near a cue, the worst first. */
+  causes: HintView[];
+  /** All cues, once the exercise has ended. */
+  cues: HintView[];
+}
+
+type Json = Record<string, unknown>;
+const isObject = (v: unknown): v is Json => typeof v === 'object' && v !== null && !Array.isArray(v);
+const word = (v: unknown): string => (typeof v === 'string' ? v : '');
+const finite = (v: unknown): number | null => (typeof v === 'number' && Number.isFinite(v) ? v : null);
+
+function hint(v: unknown): HintView | null {
+  if (!isObject(v) || word(v.text) === '') return null;
+  return {
+    id: word(v.id),
+    text: word(v.text),
+    hand: v.hand === 'left' ? 0 : v.hand === 'right' ? 1 : -1,
+    watched: word(v.watched),
+    value: word(v.value),
+    limit: word(v.limit),
+    share: finite(v.share) ?? 0,
+    holds: v.holds === true,
+    timeS: finite(v.time_s),
+  };
+}
+
+const hints = (v: unknown): HintView[] => (Array.isArray(v) ? v.map(hint).filter((h) => h !== null) : []);
+
+export function parseTutor(v: unknown): TutorView {
+  const t = isObject(v) ? v : {};
+  return { cue: hint(t.cue), causes: hints(t.causes), cues: hints(t.cues) };
+}
