@@ -24,7 +24,7 @@ export class Toasts {
   }
 
   private stay(kind: string, who: string, words: string, read: () => void): void {
-    const close = el('button', { 'aria-label': text('understood') }, text('✓ Read'));
+    const close = el('button', {}, text('✓ Read'));
     const line = el('div', { class: `toast ${kind}` }, el('b', {}, who), el('span', {}, words), close);
     close.onclick = () => {
       line.remove();
