@@ -32,14 +32,13 @@ import { softwareAdvice } from './software_rendering';
 import { Sound } from './sound/sound';
 import { Stage } from './stage';
 import { status, tellPicture } from './status';
-import type { RunGhost } from './replay/run_ghost';
+import { GhostOverlay } from './replay/ghost_overlay';
 import { RoomDesk } from './room/desk';
 import { Reading } from './step_data/reading';
 import { ViewModes } from './view_modes';
 import { TakeBack } from './take_back';
 import { Lessons } from './tutor/lessons';
 import { quaternion, vector, World } from './world';
-import { text } from './languages/text';
 
 const options = parseOptions(location.search, keptQuality(browserStore()));
 const mayDrive = options.role === 'trainee';
@@ -183,14 +182,7 @@ listenForHands(hands, {
   togglePause: () => run({ command: playback.latest?.paused ? 'resume' : 'pause', argument: '' }),
 });
 
-let ghost: RunGhost | null = null;
-if (options.ghost !== '') {
-  const no = (e: unknown) => text('No ghost of {name}: {why}', { name: options.ghost, why: String(e) });
-  import('./replay/live_ghost')
-    .then((m) => m.openGhost(options.ghost))
-    .then((run) => scene.add((ghost = run).root))
-    .catch((e: unknown) => hud.refuse(no(e), performance.now()));
-}
+const ghost = new GhostOverlay(options.ghost, scene, (why) => hud.refuse(why, performance.now()));
 
 function letHandsGo(): void {
   hands.releaseAll();
@@ -271,8 +263,7 @@ function draw(now: number): void {
     world.update(playback, now, reading.channels, scope.sight);
     Object.assign(status, world.cues.told);
   }
-  if (world && playback.latest) ghost?.show(world.bundle, playback.latest.sim_time_s);
-  status.ghost_tools = ghost?.shown ?? 0;
+  status.ghost_tools = ghost.show(world?.bundle ?? null, playback.latest);
   status.target = guiding.update({
     frame: playback.latest,
     bundle: world?.bundle ?? null,
