@@ -76,6 +76,17 @@ function askedTexts(program) {
   return [...kinds].map(([key, kind]) => ({ key, kind }));
 }
 
+/** The program that was built beside the page; '' if there is none. */
+export function builtProgram() {
+  const program = join(here, '../../../build/release/bin/insula');
+  return existsSync(program) ? program : '';
+}
+
+/** Whether the program says other texts than those that are kept. */
+export const exercisesChanged = (program) => json(askedTexts(program)) !== readFileSync(kept, 'utf8');
+
+export const htmlOf = (page) => readFileSync(join(here, `../${page}.html`), 'utf8');
+
 function fill(language, file) {
   const all = { ...catalogue(language), ...JSON.parse(readFileSync(file, 'utf8')) };
   const keys = allTexts().map((t) => t.key);
@@ -85,9 +96,8 @@ function fill(language, file) {
 }
 
 function exercises(program, check) {
-  const asked = json(askedTexts(program));
-  if (!check) return writeFileSync(kept, asked);
-  if (asked === readFileSync(kept, 'utf8')) return undefined;
+  if (!check) return writeFileSync(kept, json(askedTexts(program)));
+  if (!exercisesChanged(program)) return undefined;
   console.error(
     `error: ${relative('.', kept)} is not what the program says: node scripts/texts.mjs --exercises PROGRAM`,
   );
