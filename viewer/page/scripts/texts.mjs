@@ -37,8 +37,14 @@ function exerciseKey(english) {
 /** Text and kind of each, in order. */
 export const exerciseTexts = () => JSON.parse(readFileSync(kept, 'utf8'));
 
-/** All keys: {key, where}. Throws for a text() whose message is no literal. */
+let known;
+
+/** All keys: {key, where}. Throws for a text() whose message is no literal. The sources are read once. */
 export function allTexts() {
+  return (known ??= readTexts());
+}
+
+function readTexts() {
   const found = new Map(pageTexts().map((t) => [t.key, t.where]));
   for (const { key, kind } of exerciseTexts()) if (!found.has(key)) found.set(key, kind);
   return [...found].map(([key, where]) => ({ key, where }));

@@ -26,7 +26,8 @@ it('offers the languages that have catalogues, and English', () => {
   expect(['en', ...languages].sort()).toEqual([...offered].sort());
 });
 
-describe.each(languages)('catalogue of %s', (language) => {
+// Reading all sources with the compiler takes seconds.
+describe.each(languages)('catalogue of %s', { timeout: 120_000 }, (language) => {
   it('has every text', () => {
     const lacks = missing(language);
     const ready = JSON.stringify(Object.fromEntries(lacks.map((k) => [k, ''])), null, 2);
@@ -45,7 +46,7 @@ describe.each(languages)('catalogue of %s', (language) => {
   });
 });
 
-describe('sources', () => {
+describe('sources', { timeout: 120_000 }, () => {
   it('have no text that went past text()', () => {
     expect(allUntranslated()).toEqual([]);
   });
