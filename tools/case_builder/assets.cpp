@@ -29,7 +29,7 @@ Assets link_assets(const CaseFolder& folder, const fs::path& project, const std:
   for (const char* part : {"fissure.xml", "retracted_fissure.xml", "brain_limits.xml", "vessel_limits.xml", "bleb.xml",
                            "metrics.xml", "strand_metrics.xml", "bleeding_metrics.xml"})
     copy_all(root / "scenes/parts" / part, here / "scenes/parts" / part);
-  for (const char* tool : {"suction", "dissector", "clip_applier", "retractor"})
+  for (const char* tool : {"suction", "dissector", "clip_applier", "retractor", "micro_doppler"})
     copy_all(root / "meshes/instruments" / tool, here / "meshes/instruments" / tool);
   for (const std::string& clip : clips) copy_all(root / "meshes/clips" / clip, here / "meshes/clips" / clip);
   copy_all(root / "meshes/window", here / "meshes/window");

@@ -162,7 +162,7 @@ const modes: ViewModes = new ViewModes(options, headset, {
   refuse: (why) => hud.refuse(why, performance.now()),
 });
 
-const lessons = new Lessons({ hud, hudRoot, canvas, scene, scope, sound, mayDrive });
+const lessons = new Lessons({ hud, canvas, scene, scope, sound, mayDrive });
 const toolPose = (hand: number) => {
   const t = playback.latest && world ? toolInHand(playback.latest, world.bundle, hand) : null;
   return t ? { p: vector(t.p_m), q: quaternion(t.q) } : null;

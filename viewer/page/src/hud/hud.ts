@@ -3,18 +3,17 @@
 // the bottom. On a narrow screen the panels are folded away behind tabs.
 import type { Bundle } from '../bundle_types';
 import { toolInHand } from '../hand_tool';
-import type { HandState } from '../hands';
 import type { InventoryItem } from '../inventory';
 import type { HapticStatus, RenderFrame, SimEvent } from '../lcm';
 import type { Role } from '../options';
-import type { Channels } from '../step_data/channels';
-import { takeBackText, type Within } from '../take_back';
+import { takeBackText } from '../take_back';
 import { glowCommands } from './commands';
 import { el, setText } from './dom';
 import { ExercisePanel } from './exercise_panel';
+import type { FrameView } from './frame_view';
 import { returnFocusToField } from './focus';
-import { GuidePanel, type GuideView } from './guide_panel';
-import { type DepthView, depthText, type HandActions, HandPanel } from './hand_panel';
+import { GuidePanel } from './guide_panel';
+import { depthText, type HandActions, HandPanel } from './hand_panel';
 import { HapticPanel } from './haptic';
 import { Help } from './help';
 import { machineText } from './machine_text';
@@ -44,25 +43,6 @@ export interface HudActions extends ViewActions, HandActions, SoundActions, Touc
   turnToTarget(): void;
 }
 
-export interface FrameView {
-  frame: RenderFrame;
-  channels: Channels;
-  /** What the frame's hud_json says, null when it says nothing. */
-  state: HudState | null;
-  /** Hand that mouse and keyboard drive; -1: none. */
-  active: number;
-  /** Left, right. */
-  hands: HandState[];
-  /** Of the active hand; null: no target is shown. */
-  guide: GuideView | null;
-  /** The tool is being turned to its target. */
-  assists: boolean;
-  depth: DepthView;
-  within: Within | null;
-  /** A picture of the scene is there. */
-  ready: boolean;
-}
-
 const side = (hand: number): 'left' | 'right' => (hand === 0 ? 'left' : 'right');
 
 export class Hud {
@@ -73,9 +53,11 @@ export class Hud {
   readonly toolList: ToolList;
   /** Below the controls of the hands. */
   readonly beside = el('div', { class: 'beside' });
+  /** Below the field. */
+  readonly under = el('div', { class: 'under' });
   private readonly vitals = new Vitals();
   private readonly exercise = new ExercisePanel();
-  private readonly toasts = new Toasts();
+  readonly toasts = new Toasts();
   private readonly instructor: InstructorPanel | null;
   private readonly guide: GuidePanel;
   private readonly tabs: Tabs;
@@ -130,17 +112,18 @@ export class Hud {
       this.beside,
     );
     const warning = el('span', { class: 'warn' }, text('For training only. Not for patient care.'));
-    const notices = el('div', { class: 'notices' }, this.notice.root, this.problems.root);
     const left = el('div', { class: 'column left' }, this.vitals.root, this.exercise.root, this.inventory.root);
     const right = el('div', { class: 'column right' }, handsPanel, ...(this.instructor ? [this.instructor.root] : []));
     this.tabs = new Tabs(root, [
       { name: 'left', text: text('Patient and exercise') },
       { name: 'right', text: role === 'instructor' ? text('Commands') : text('Hands and tools') },
     ]);
+    const notices = el('div', { class: 'notices' }, this.notice.root, this.problems.root);
+    this.under.append(this.guide.root, ...(mayDrive ? [makeTouch(actions)] : []), this.tabs.root);
     root.append(
       left,
       right,
-      el('div', { class: 'under' }, this.guide.root, ...(mayDrive ? [makeTouch(actions)] : []), this.tabs.root),
+      this.under,
       el('footer', {}, warning, this.haptic.root, this.machine, this.link),
       ...[this.message, this.banner, this.toasts.root, notices, ...this.session.roots, this.help.root],
     );

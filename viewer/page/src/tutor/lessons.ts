@@ -14,7 +14,6 @@ import { TutorMenu } from './tutor_menu';
 
 interface Place {
   hud: Hud;
-  hudRoot: HTMLElement;
   canvas: HTMLElement;
   scene: THREE.Scene;
   scope: Microscope;
@@ -29,14 +28,15 @@ export class Lessons {
   private bundle: Bundle | null = null;
 
   constructor(private readonly place: Place) {
-    const { hud, hudRoot, canvas, scene, scope, sound } = place;
+    const { hud, canvas, scene, scope, sound } = place;
     this.cues = new TutorCues((now) => sound.hint(now));
     this.menu = new TutorMenu({ cues: (c) => this.cues.choose(c), sound: (c) => sound.choose(c) });
     this.tutorial = new Tutorial(scope, canvas);
     this.menu.root.append(this.tutorial.panel.button);
     this.menu.root.hidden = !place.mayDrive;
     hud.beside.append(this.menu.root);
-    hudRoot.append(this.cues.line.root, this.tutorial.panel.root);
+    hud.toasts.root.append(this.cues.line.root);
+    hud.under.prepend(this.tutorial.panel.root);
     scene.add(this.cues.arrow.root);
   }
 
@@ -47,7 +47,8 @@ export class Lessons {
     const tutor = mayDrive ? (state?.tutor ?? null) : null;
     this.cues.update({ frame, bundle, tutor, sight: scope.sight, nowMs });
     this.menu.show(this.cues.choice, sound.settings);
-    this.tutorial.update(frame, mayDrive && state?.mode === 'practice', nowMs);
+    const practises = mayDrive && state?.mode === 'practice' && state.state === 'running';
+    this.tutorial.update(frame, practises, nowMs);
     status.cue = this.cues.shown?.id ?? '';
     status.tour = this.tutorial.panel.root.hidden ? '' : (this.tutorial.panel.root.dataset.step ?? '');
   }
