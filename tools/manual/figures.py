@@ -94,7 +94,8 @@ ERRORS = {  # section of the page: (picture, {program: tests that keep errors})
             "plugin_tests": "Chambers.AddUp*:Pressure.Balances*:Pressure.SphereOf*:Pressure.FillsAt*:Pressure.Sealed*:"
             "Pressure.RowsAre*:Prestress.Imaged*:Prestress.Without*:Section.Cuts*:BloodFlow.Network*:"
             "BloodFlow.SplitsThe*:BloodFlow.ClipOn*:BloodFlow.TearBleeds*:BloodFlow.TornSac*:"
-            "BloodFlow.PulsatesWithout*:Bleeding.TearsWhen*:Bleeding.AWallThat*"
+            "BloodFlow.PulsatesWithout*:Bleeding.TearsWhen*:Bleeding.AWallThat*:DopplerBeam.FollowsTheCosine*:"
+            "MicroDoppler.AgreesWith*"
         },
     ),
     "Clips and thin walls": (

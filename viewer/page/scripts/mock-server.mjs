@@ -37,6 +37,8 @@ function serve(scene, state, dist) {
       const data = scene.files.get(bundle[2]);
       return data ? reply(200, types[extname(bundle[2])], data) : reply(404, 'text/plain', 'not found');
     }
+    // The picture for the overview of a room, which nobody looks at here.
+    if (request.method === 'PUT' && path === '/api/station/picture') return reply(204, 'text/plain', '');
     const file = join(dist, normalize(path === '/' ? '/index.html' : path));
     if (!file.startsWith(dist) || !existsSync(file)) return reply(404, 'text/plain', 'not found');
     return reply(200, types[extname(file)] ?? 'application/octet-stream', readFileSync(file));

@@ -220,7 +220,7 @@ async function settings(page, mock) {
   }));
   assert.deepEqual(seen, {
     volume: '0.5',
-    pressed: ['true', 'false', 'true', 'true'],
+    pressed: ['true', 'false', 'true', 'true', 'true'],
     labels: ['volume of the sound'],
   });
   await page.keyboard.press('m');

@@ -221,7 +221,7 @@ try {
   assert.ok(await page.locator('[data-tool=right_clip_applier]').isDisabled(), 'the instructor exchanges no tools');
   assert.equal(await page.locator('.touch').count(), 0);
   await page.evaluate(() => {
-    const slider = document.querySelector('[aria-label^="set_systolic"]');
+    const slider = document.querySelector('[aria-label^="set systolic"]');
     slider.value = '180';
     slider.dispatchEvent(new Event('input'));
   });
