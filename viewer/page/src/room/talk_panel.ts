@@ -65,7 +65,7 @@ export class TalkPanel {
     };
     const clear = el('button', { type: 'button' }, text('Clear'));
     clear.onclick = () => this.actions.clear();
-    return el('div', { class: 'pencil' }, button('draw', text('Draw')), button('point', text('Point')), clear);
+    return el('div', { class: 'controls pencil' }, button('draw', text('Draw')), button('point', text('Point')), clear);
   }
 
   private choose(mode: PencilMode): void {
