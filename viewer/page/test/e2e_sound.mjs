@@ -162,11 +162,12 @@ async function listenToMock(browser) {
     const heard = await latencies(page, mock);
     const { latest_ms_max: scheduled, device_ms: device } = await report();
     assert.equal(heard.length, 19);
-    // A busy machine may delay single ones, so the median counts.
-    const inOrder = [...heard].sort((a, b) => a - b);
+    // A busy machine may delay single ones beyond what is measured, so the median of at least 17 counts.
+    const inOrder = heard.filter(Number.isFinite).sort((a, b) => a - b);
+    assert.ok(inOrder.length >= 17, `ms: ${heard.join(' ')}`);
     assert.ok(inOrder[0] >= 0 && inOrder[9] < latestMs, `ms: ${heard.map((x) => x.toFixed(1)).join(' ')}`);
     check(
-      `events sound ${Math.max(...heard).toFixed(1)} ms after their arrival at the latest, in the audio's own thread ` +
+      `events sound ${inOrder.at(-1).toFixed(1)} ms after their arrival at the latest, in the audio's own thread ` +
         `(begun after ${scheduled.toFixed(1)} ms; this browser's output adds ${device.toFixed(0)} ms)`,
     );
 
