@@ -2,12 +2,12 @@
 #include "training/xapi/login.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <cstdlib>
 #include <fstream>
 
 #include "core/base/input_error.h"
+#include "core/base/private_file.h"
 #include "core/base/text.h"
 
 namespace insula::xapi {
@@ -25,19 +25,11 @@ Login from_environment() {
   return out;
 }
 
-void check_mode(const std::filesystem::path& file) {
-  struct stat found {};
-  if (::stat(file.c_str(), &found) != 0) throw InputError(fmt::format("{}: it cannot be read", file.string()));
-  if (!S_ISREG(found.st_mode)) throw InputError(fmt::format("{}: this is no file", file.string()));
-  if ((found.st_mode & (S_IRWXG | S_IRWXO)) != 0)
-    throw InputError(fmt::format("{}: others may read this password; chmod 600 {}", file.string(), file.string()));
-}
-
 }  // namespace
 
 Login read_login(const std::filesystem::path& file) {
   if (file.empty()) return from_environment();
-  check_mode(file);
+  check_private(file);
   std::ifstream in(file);
   std::string line;
   if (!std::getline(in, line)) throw InputError(fmt::format("{}: it has no line NAME:PASSWORD", file.string()));

@@ -114,7 +114,7 @@ bool HttpSession::refuse_strangers(const Request& request) {
     const std::string to = "/login.html?next=" + percent_encoded(target.size() < 500 ? target : path);
     send_text(request, http::status::see_other, "text/plain", "log in first\n", {{http::field::location, to}});
   } else {
-    send_text(request, http::status::unauthorized, "application/json", "{\"error\": \"log in first\"}\n");
+    send_error(request, http::status::unauthorized, "log in first");
   }
   return true;
 }
@@ -130,8 +130,7 @@ void HttpSession::answer_login(const Request& request, bool out) {
   const bool posts = request.method() == http::verb::post;
   if (!posts && !out)
     return send_text(request, http::status::ok, "application/json", site_.login_api.state(visitor_.access));
-  if (!posts || !same_site(request))
-    return send_text(request, http::status::forbidden, "application/json", "{\"error\": \"foreign origin\"}\n");
+  if (!posts || !same_site(request)) return send_error(request, http::status::forbidden, "foreign origin");
   const Credentials credentials = site_.login_api.credentials(view(request[http::field::cookie]), {});
   const LoginApi::Answer answer =
       out ? site_.login_api.log_out(credentials) : site_.login_api.log_in(request.body(), visitor_.address);
@@ -165,9 +164,7 @@ void HttpSession::answer_session(const Request& request, const std::vector<std::
 /// /api/NAME. Runs are a person's data, and another exercise changes what the hands feel: only for pages on this
 /// machine, and only from our own site where something changes.
 void HttpSession::answer_training(const Request& request, const std::vector<std::string>& parts) {
-  const auto refuse = [&](http::status status, const char* why) {
-    send_text(request, status, "application/json", fmt::format("{{\"error\": \"{}\"}}\n", why));
-  };
+  const auto refuse = [&](http::status status, std::string_view why) { send_error(request, status, why); };
   if (!from_this_machine()) return refuse(http::status::forbidden, "only for pages on this machine");
   if (parts.size() != 2) return refuse(http::status::not_found, "not found");
   const std::string_view target = view(request.target());
@@ -227,6 +224,10 @@ void HttpSession::answer(const Request& request) {
   if (site_.page.folder.empty() && parts->size() == 1 && parts->back().ends_with(".html"))
     return send_text(request, http::status::service_unavailable, "text/html; charset=utf-8", std::string(not_built));
   not_found();
+}
+
+void HttpSession::send_error(const Request& request, http::status status, std::string_view why) {
+  send_text(request, status, "application/json", fmt::format("{{\"error\": \"{}\"}}\n", why));
 }
 
 void HttpSession::send_text(const Request& request, http::status status, std::string_view type, std::string body,

@@ -39,6 +39,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void answer_training(const Request& request, const std::vector<std::string>& parts);
   void answer_session(const Request& request, const std::vector<std::string>& parts);
   bool from_this_machine() const;
+  /// {"error": why}; why: without quotes and backslashes.
+  void send_error(const Request& request, http::status status, std::string_view why);
   void send_text(const Request& request, http::status status, std::string_view type, std::string body,
                  const std::vector<std::pair<http::field, std::string>>& fields = {});
   void send_file(const Request& request, const std::filesystem::path& file, std::string_view caching,

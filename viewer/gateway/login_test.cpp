@@ -11,6 +11,7 @@
 
 #include "core/base/input_error.h"
 #include "core/bus/mem_bus.h"
+#include "core/testing/temp_folder.h"
 #include "viewer/gateway/audit.h"
 #include "viewer/gateway/client_for_test.h"
 #include "viewer/gateway/gateway.h"
@@ -24,6 +25,7 @@ using namespace std::chrono_literals;
 using nlohmann::json;
 using pages::Fields;
 using pages::Response;
+using test_files::TempFolder;
 
 const Secrets room{"123456", "654321", std::string(40, 'k')};
 
@@ -119,38 +121,30 @@ TEST(Rights, GrowWithAccessAndRoleTogether) {
   EXPECT_FALSE(rights_of(Role::trainee, Access::here).draws);
 }
 
-class TempFolder {
- public:
-  TempFolder() {
-    std::string name = (fs::temp_directory_path() / "insula_login_XXXXXX").string();
-    path = ::mkdtemp(name.data());
-  }
-  ~TempFolder() { fs::remove_all(path); }
-  fs::path file(const std::string& name, const std::string& text, fs::perms perms = fs::perms::owner_read) const {
-    std::ofstream(path / name) << text;
-    fs::permissions(path / name, perms);
-    return path / name;
-  }
-  fs::path path;
-};
+fs::path secret_file(const TempFolder& folder, const std::string& name, const std::string& text,
+                     fs::perms perms = fs::perms::owner_read) {
+  const fs::path file = folder.write(name, text);
+  fs::permissions(file, perms);
+  return file;
+}
 
 TEST(SecretFiles, AreCheckedBeforeUse) {
   const TempFolder folder;
   Secrets secrets;
-  read_pins(folder.file("good", R"({"pin":"123456","observer_pin":"222222"})"), secrets);
+  read_pins(secret_file(folder, "good", R"({"pin":"123456","observer_pin":"222222"})"), secrets);
   EXPECT_EQ(secrets.observer_pin, "222222");
-  read_key(folder.file("key", std::string(32, 'a') + "\n"), secrets);
+  read_key(secret_file(folder, "key", std::string(32, 'a') + "\n"), secrets);
   EXPECT_EQ(secrets.key, std::string(32, 'a'));
   const fs::perms all = fs::perms::owner_read | fs::perms::others_read;
-  EXPECT_THROW(read_pins(folder.file("open", R"({"pin":"123456"})", all), secrets), InputError);
+  EXPECT_THROW(read_pins(secret_file(folder, "open", R"({"pin":"123456"})", all), secrets), InputError);
   for (const char* bad : {"", "{}", "[]", R"({"pin":123456})", R"({"pin":"12345"})", R"({"pin":"12345a"})",
                           R"({"pin":"123456","observer_pin":"123456"})"}) {
-    const fs::path file = folder.file("bad" + std::to_string(std::string(bad).size()), bad);
+    const fs::path file = secret_file(folder, "bad" + std::to_string(std::string(bad).size()), bad);
     Secrets read;
     EXPECT_THROW(read_pins(file, read), InputError) << bad;
   }
-  EXPECT_THROW(read_key(folder.file("short", "abc"), secrets), InputError);
-  EXPECT_THROW(read_key(folder.path / "none", secrets), InputError);
+  EXPECT_THROW(read_key(secret_file(folder, "short", "abc"), secrets), InputError);
+  EXPECT_THROW(read_key(folder.path() / "none", secrets), InputError);
 }
 
 /// 127.0.0.1 is this machine; other addresses of the loopback network stand for other machines.
@@ -159,10 +153,10 @@ class GatewayOfARoom : public ::testing::Test {
   void start(Secrets secrets, bool tls = false) {
     Options options;
     options.port = 0;
-    options.page = folder_.path / "page";
+    options.page = folder_.path() / "page";
     options.secrets = std::move(secrets);
-    options.audit = folder_.path / "commands.log";
-    if (tls) options.tls = self_made_certificate(folder_.path / "own", {});
+    options.audit = folder_.path() / "commands.log";
+    if (tls) options.tls = self_made_certificate(folder_.path() / "own", {});
     options.is_here = [](const auto& remote, const auto&) { return remote.to_string() == "127.0.0.1"; };
     fs::create_directories(options.page);
     for (const char* page : {"index.html", "login.html"}) std::ofstream(options.page / page) << page;
@@ -207,7 +201,7 @@ class GatewayOfARoom : public ::testing::Test {
   }
   std::vector<json> record() {
     std::vector<json> out;
-    std::ifstream in(folder_.path / "commands.log");
+    std::ifstream in(folder_.path() / "commands.log");
     for (std::string line; std::getline(in, line);) out.push_back(json::parse(line));
     return out;
   }
@@ -301,7 +295,7 @@ TEST_F(GatewayOfARoom, EveryCommandAndLoginIsRecorded) {
   EXPECT_EQ(lines[5]["command"], "hand");
   EXPECT_NE(lines[2]["page"], lines[4]["page"]);
   EXPECT_EQ(lines[0]["time"].get<std::string>().size(), 24U);
-  EXPECT_EQ(fs::status(folder_.path / "commands.log").permissions() & (fs::perms::group_all | fs::perms::others_all),
+  EXPECT_EQ(fs::status(folder_.path() / "commands.log").permissions() & (fs::perms::group_all | fs::perms::others_all),
             fs::perms::none);
   for (const json& line : lines) EXPECT_EQ(line.dump().find("654321"), std::string::npos) << "no PIN is kept";
 }
@@ -356,31 +350,31 @@ TEST_F(GatewayOfARoom, ServesByTls) {
 
 TEST(Certificates, AreKeptUntilTheyLackAName) {
   const TempFolder folder;
-  const CertificateFiles files = self_made_certificate(folder.path, {});
+  const CertificateFiles files = self_made_certificate(folder.path(), {});
   const std::string print = fingerprint(files.certificate);
   EXPECT_EQ(print.size(), 95U);
-  EXPECT_EQ(fingerprint(self_made_certificate(folder.path, {"127.0.0.1"}).certificate), print);
+  EXPECT_EQ(fingerprint(self_made_certificate(folder.path(), {"127.0.0.1"}).certificate), print);
   const std::string other =
-      fingerprint(self_made_certificate(folder.path, {"trainer.local", "192.0.2.77"}).certificate);
+      fingerprint(self_made_certificate(folder.path(), {"trainer.local", "192.0.2.77"}).certificate);
   EXPECT_NE(other, print);
-  EXPECT_EQ(fingerprint(self_made_certificate(folder.path, {"trainer.local"}).certificate), other);
+  EXPECT_EQ(fingerprint(self_made_certificate(folder.path(), {"trainer.local"}).certificate), other);
   EXPECT_EQ(fs::status(files.key).permissions(), fs::perms::owner_read | fs::perms::owner_write);
-  std::ofstream(folder.path / "none.pem") << "x";
-  EXPECT_THROW(server_context({folder.path / "none.pem", files.key}), InputError);
-  EXPECT_THROW(fingerprint(folder.path / "none.pem"), InputError);
+  std::ofstream(folder.path() / "none.pem") << "x";
+  EXPECT_THROW(server_context({folder.path() / "none.pem", files.key}), InputError);
+  EXPECT_THROW(fingerprint(folder.path() / "none.pem"), InputError);
   EXPECT_THROW(self_made_certificate("/proc/nowhere", {}), InputError);
 }
 
 TEST(AuditRecord, IsBounded) {
   const TempFolder folder;
-  Audit audit(folder.path / "commands.log", 4096);
+  Audit audit(folder.path() / "commands.log", 4096);
   for (int i = 0; i < 1000; ++i) audit.write({"127.0.0.2", "instructor", 1, std::string(3000, 'x'), false, "no\nno"});
   std::uintmax_t bytes = 0;
   int files = 0;
-  for (const auto& entry : fs::directory_iterator(folder.path)) bytes += entry.file_size(), ++files;
+  for (const auto& entry : fs::directory_iterator(folder.path())) bytes += entry.file_size(), ++files;
   EXPECT_EQ(files, 3);
   EXPECT_LT(bytes, 3 * 4096U);
-  std::ifstream in(folder.path / "commands.log");
+  std::ifstream in(folder.path() / "commands.log");
   for (std::string line; std::getline(in, line);)
     EXPECT_EQ(json::parse(line)["command"].get<std::string>().size(), 400U);
   EXPECT_THROW(Audit("/proc/nowhere/commands.log"), InputError);

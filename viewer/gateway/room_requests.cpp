@@ -11,8 +11,6 @@ namespace {
 
 constexpr std::string_view json_type = "application/json", jpeg_type = "image/jpeg";
 
-std::string error_json(std::string_view why) { return fmt::format("{{\"error\": \"{}\"}}\n", why); }
-
 /// The number of a station in a query; nothing if there is no such station.
 std::optional<std::size_t> station_in(std::string_view target, std::size_t stations) {
   const std::size_t mark = target.find('?');
@@ -28,9 +26,7 @@ std::optional<std::size_t> station_in(std::string_view target, std::size_t stati
 /// /api/station, /api/station/picture, /api/ticket, /api/room, /api/room/picture, /api/room/open. Only for who may give
 /// commands, and from our own site where something changes.
 void HttpSession::answer_room(const Request& request, const std::vector<std::string>& parts) {
-  const auto refuse = [&](http::status status, std::string_view why) {
-    send_text(request, status, json_type, error_json(why));
-  };
+  const auto refuse = [&](http::status status, std::string_view why) { send_error(request, status, why); };
   const bool reads = request.method() == http::verb::get || request.method() == http::verb::head;
   if (visitor_.access < Access::instructor) return refuse(http::status::forbidden, "only for instructors");
   if (!reads && !same_site(request)) return refuse(http::status::forbidden, "foreign origin");
@@ -61,9 +57,7 @@ void HttpSession::answer_room(const Request& request, const std::vector<std::str
 /// Of the trainee's page, which is on this machine.
 void HttpSession::take_picture(const Request& request) {
   const bool jpeg = request[http::field::content_type] == "image/jpeg";
-  const auto refuse = [&](http::status status, std::string_view why) {
-    send_text(request, status, json_type, error_json(why));
-  };
+  const auto refuse = [&](http::status status, std::string_view why) { send_error(request, status, why); };
   if (visitor_.access != Access::here) return refuse(http::status::forbidden, "only for pages on this machine");
   if (request.method() != http::verb::put || !jpeg) return refuse(http::status::bad_request, "PUT an image/jpeg");
   const std::string_view why = site_.station.set_picture(request.body());
@@ -72,8 +66,7 @@ void HttpSession::take_picture(const Request& request) {
 }
 
 void HttpSession::give_ticket(const Request& request) {
-  if (!site_.logins.needed())
-    return send_text(request, http::status::not_found, json_type, error_json("no logins here"));
+  if (!site_.logins.needed()) return send_error(request, http::status::not_found, "no logins here");
   site_.audit.write({visitor_.address, std::string(name_of(visitor_.access)), 0, "ticket", true, {}});
   send_text(request, http::status::ok, json_type, fmt::format("{{\"ticket\": \"{}\"}}\n", site_.logins.ticket()));
 }

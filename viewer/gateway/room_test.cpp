@@ -10,6 +10,7 @@
 
 #include "core/base/input_error.h"
 #include "core/bus/mem_bus.h"
+#include "core/testing/temp_folder.h"
 #include "viewer/gateway/client_for_test.h"
 #include "viewer/gateway/gateway.h"
 #include "viewer/gateway/station.h"
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 namespace http = boost::beast::http;
 using namespace std::chrono_literals;
 using nlohmann::json;
+using test_files::TempFolder;
 
 /// Markers of a JPEG of that size, without a picture.
 std::string jpeg(int wide, int high, std::size_t more = 0) {
@@ -31,20 +33,6 @@ std::string jpeg(int wide, int high, std::size_t more = 0) {
 
 const std::string room_key(40, 'k');
 constexpr const char* here = "127.0.0.9";  // stands for pages on the station itself; others for other machines
-
-class RoomFolder {
- public:
-  RoomFolder() {
-    std::string name = (fs::temp_directory_path() / "insula_room_XXXXXX").string();
-    path = ::mkdtemp(name.data());
-  }
-  ~RoomFolder() { fs::remove_all(path); }
-  fs::path file(const std::string& name, const std::string& text) const {
-    std::ofstream(path / name) << text;
-    return path / name;
-  }
-  fs::path path;
-};
 
 /// A station with its bus.
 class LiveStation {
@@ -129,8 +117,8 @@ TEST(Room, ShowsTwentyStationsWithPicturesAndOpensOne) {
     stations[i]->run("exercise " + std::to_string(i), double(i));
     ASSERT_EQ(stations[i]->put_picture(here, jpeg(320, 180)).result_int(), 200U);
   }
-  const RoomFolder folder;
-  LiveStation instructor("desk", with_stations(read_stations(folder.file("stations", station_lines(stations)))));
+  const TempFolder folder;
+  LiveStation instructor("desk", with_stations(read_stations(folder.write("stations", station_lines(stations)))));
   const json list = overview(instructor, all_answer);
   ASSERT_EQ(list.size(), count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -164,17 +152,17 @@ TEST(Room, ShowsTwentyStationsWithPicturesAndOpensOne) {
 TEST(Room, SaysWhyAStationIsNotShown) {
   std::vector<std::unique_ptr<LiveStation>> stations;
   stations.push_back(std::make_unique<LiveStation>("other key", Options{}, std::string(40, 'x')));
-  const RoomFolder folder;
-  LiveStation instructor("desk", with_stations(read_stations(folder.file("stations", station_lines(stations)))));
+  const TempFolder folder;
+  LiveStation instructor("desk", with_stations(read_stations(folder.write("stations", station_lines(stations)))));
   const json list = overview(instructor, [](const json& all) { return all[0]["error"] != "it was not asked yet"; });
   EXPECT_EQ(list[0]["error"], "it does not admit this room's key");
   EXPECT_TRUE(list[0]["station"].is_null());
 }
 
 TEST(Room, AsksByTlsOnlyTheListedCertificate) {
-  const RoomFolder folder;
+  const TempFolder folder;
   Options tls;
-  tls.tls = self_made_certificate(folder.path, {});
+  tls.tls = self_made_certificate(folder.path(), {});
   std::vector<std::unique_ptr<LiveStation>> stations;
   for (const char* name : {"right", "wrong", "unlisted"}) stations.push_back(std::make_unique<LiveStation>(name, tls));
   const std::string right = fingerprint(tls.tls.certificate);
@@ -182,7 +170,7 @@ TEST(Room, AsksByTlsOnlyTheListedCertificate) {
   wrong[0] = wrong[0] == '0' ? '1' : '0';
   const std::string text = "a " + stations[0]->url() + " " + right + "\nb " + stations[1]->url() + " " + wrong +
                            "\nc " + stations[2]->url() + "\n";
-  LiveStation instructor("desk", with_stations(read_stations(folder.file("stations", text))));
+  LiveStation instructor("desk", with_stations(read_stations(folder.write("stations", text))));
   const json list = overview(instructor, [](const json& all) {
     return all[0]["error"] == "" && all[1]["error"] != "it was not asked yet" &&
            all[2]["error"] != "it was not asked yet";
@@ -251,14 +239,14 @@ TEST(Jpeg, IsKnownByItsMarkers) {
 }
 
 TEST(StationList, IsCheckedLineByLine) {
-  const RoomFolder folder;
+  const TempFolder folder;
   const std::string print = std::string("AB") + [] {
     std::string out;
     for (int i = 0; i < 31; ++i) out += ":CD";
     return out;
   }();
   const auto read = read_stations(
-      folder.file("good", "# x\n a  http://Trainer.Local:8081  # first\nb https://[fd00::1]/ " + print + "\n"));
+      folder.write("good", "# x\n a  http://Trainer.Local:8081  # first\nb https://[fd00::1]/ " + print + "\n"));
   ASSERT_EQ(read.size(), 2U);
   EXPECT_EQ(read[0].url(), "http://trainer.local:8081/");
   EXPECT_EQ(read[1].url(), "https://[fd00::1]:443/");
@@ -266,7 +254,7 @@ TEST(StationList, IsCheckedLineByLine) {
   int number = 0;
   for (const char* bad : {"", "a", "a trainer.local", "a ftp://b/", "a http://b:0/", "a http://b:99999/",
                           "a http://b/c d e", "a https://b/ AB:CD", "a http://b:8080/path", "a http:///"}) {
-    const fs::path file = folder.file("bad" + std::to_string(++number), "# line\n" + std::string(bad) + "\n");
+    const fs::path file = folder.write("bad" + std::to_string(++number), "# line\n" + std::string(bad) + "\n");
     try {
       read_stations(file);
       ADD_FAILURE() << bad;
@@ -275,7 +263,7 @@ TEST(StationList, IsCheckedLineByLine) {
       EXPECT_TRUE(located || *bad == '\0') << e.what();
     }
   }
-  EXPECT_THROW(read_stations(folder.path / "none"), InputError);
+  EXPECT_THROW(read_stations(folder.path() / "none"), InputError);
 }
 
 }  // namespace

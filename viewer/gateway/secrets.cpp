@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/input_error.h"
+#include "core/base/private_file.h"
 
 namespace insula::gateway {
 namespace fs = std::filesystem;
@@ -23,13 +24,7 @@ bool is_key_character(char c) {
 }
 
 std::string read_private(const fs::path& file) {
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (error || !fs::is_regular_file(status))
-    throw InputError(fmt::format("{} is no file that can be read", file.string()));
-  constexpr fs::perms of_others = fs::perms::group_all | fs::perms::others_all;
-  if ((status.permissions() & of_others) != fs::perms::none)
-    throw InputError(fmt::format("{} can be read by others: chmod 600 {}", file.string(), file.string()));
+  check_private(file);
   std::ifstream in(file, std::ios::binary);
   std::string text(std::istreambuf_iterator<char>(in), {});
   if (!in || text.size() > most_bytes_of_secret) throw InputError(fmt::format("{} holds no secret", file.string()));
