@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the engine measures of the hands (metrics_t), read with care: it is text from outside.
-import { finite, type Json, list, text } from './state';
+import { finite, type Json } from '../json_values';
+import { list, text } from './state';
 import { said } from '../languages/said';
 
 export interface MetricView {

@@ -2,7 +2,7 @@
 // What the engine says of the exercise (hud_json of a frame), read with care: it is text from outside.
 import { fixed } from '../languages/numbers';
 import { said } from '../languages/said';
-
+import { finite, type Json } from '../json_values';
 import { parseTutor, type TutorView } from '../tutor/state';
 
 export interface TimerView {
@@ -55,8 +55,6 @@ export interface HudState {
   tutor: TutorView;
 }
 
-export const finite = (v: unknown): number | null => (typeof v === 'number' && Number.isFinite(v) ? v : null);
-export type Json = Record<string, unknown>;
 const isObject = (v: unknown): v is Json => typeof v === 'object' && v !== null;
 export const list = (v: unknown): Json[] => (Array.isArray(v) ? v.filter(isObject) : []);
 export const text = (v: unknown): string => (v === null || v === undefined ? '' : String(v));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where recorded sessions come from: the gateway of this machine, or a file that a person chooses.
-import { finite, list, text } from '../hud/state';
+import { list, text } from '../hud/state';
+import { finite } from '../json_values';
 import { answered, type ByteSource, RemoteSource } from './byte_source';
 
 export interface Note {

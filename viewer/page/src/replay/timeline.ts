@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a recording tells over time: events, forces of the hands, channels and metrics. Times are seconds since the
 // recording began.
-import { finite, type Json, list, text } from '../hud/state';
+import { list, text } from '../hud/state';
+import { finite, type Json } from '../json_values';
 import { sim_event_t } from '../lcm';
 import type { Container, TopicMessage } from './container';
 import { said } from '../languages/said';

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What somebody sets before he begins: language, sound, picture quality, colours, devices. The browser keeps it.
+// What somebody sets before he begins: sound, picture quality, colours, devices. The browser keeps it.
 import { browserStore } from '../browser_store';
 import { el } from '../hud/dom';
 import { SoundPanel } from '../hud/sound_panel';
@@ -31,8 +31,6 @@ const paletteText = (name: PaletteName): string =>
 export class Settings {
   readonly button = el('button', { type: 'button', class: 'plain' }, text('Settings'));
   readonly root = el('dialog', { class: 'progress settings', 'aria-labelledby': 'settings-title' });
-  /** Where the choice of a language belongs. */
-  readonly language = el('div', { class: 'language' });
   private readonly store = browserStore();
   private readonly sound = new SoundPanel({ sound: (change) => this.changeSound(change) }, '');
   private heard = readSettings(this.store);
@@ -42,7 +40,6 @@ export class Settings {
     close.onclick = () => this.root.close();
     this.root.append(
       el('h2', { id: 'settings-title' }, text('Settings')),
-      this.language,
       this.part(text('Sound'), this.sound.root),
       this.part(text('Picture quality'), this.quality()),
       this.part(text('Colours'), this.colours(), this.swatches()),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What scene.json declares of each step's data: channels, drawables and materials (docs/scene-bundle.md). The text
 // comes from outside, so every entry is checked here, and an error names the entry.
+import { finite, isObject, type Json, word } from '../json_values';
 
 export type Shown = 'vital' | 'curve' | 'none';
 
@@ -81,12 +82,6 @@ export interface MaterialData {
 /** Malformed data of the engine: says which entry and why. */
 export class DataError extends Error {}
 
-type Json = Record<string, unknown>;
-
-const isObject = (v: unknown): v is Json => typeof v === 'object' && v !== null && !Array.isArray(v);
-const text = (v: unknown, otherwise = ''): string => (typeof v === 'string' ? v : otherwise);
-const finite = (v: unknown): number | null => (typeof v === 'number' && Number.isFinite(v) ? v : null);
-
 /** Objects of a list; throws where the list or an entry is something else. */
 function objects(v: unknown, what: string): Json[] {
   if (v === undefined || v === null) return [];
@@ -120,7 +115,7 @@ function display(v: unknown, unit: string): ChannelData['display'] {
   const d = isObject(v) ? v : {};
   const digits = finite(d.digits);
   return {
-    unit: text(d.unit, unit === '1' ? '' : unit),
+    unit: word(d.unit, unit === '1' ? '' : unit),
     scale: finite(d.scale) || 1,
     digits: digits === null ? 2 : Math.max(0, Math.min(9, Math.round(digits))),
   };
@@ -135,12 +130,12 @@ export function parseChannels(json: unknown): ChannelData[] {
     if (c.offset !== next) throw new DataError(`scene.json: channel ${id} has offset ${c.offset}, expected ${next}`);
     next += c.size;
     const dot = id.indexOf('.');
-    const unit = text(c.unit);
+    const unit = word(c.unit);
     return {
       id,
-      component: text(c.component, dot < 0 ? id : id.slice(0, dot)),
-      name: text(c.name, id.slice(dot + 1)),
-      doc: text(c.doc),
+      component: word(c.component, dot < 0 ? id : id.slice(0, dot)),
+      name: word(c.name, id.slice(dot + 1)),
+      doc: word(c.doc),
       unit,
       size: c.size,
       offset: c.offset,
@@ -148,7 +143,7 @@ export function parseChannels(json: unknown): ChannelData[] {
       max: finite(c.max),
       display: display(c.display, unit),
       shown: c.shown === 'vital' || c.shown === 'curve' ? c.shown : 'none',
-      group: text(c.group),
+      group: word(c.group),
       bands: isObject(c.bands) ? { good: range(c.bands.good), high: range(c.bands.high) } : null,
     };
   });
@@ -190,18 +185,18 @@ export function parseDrawables(json: unknown): DrawableData[] {
     return {
       index: count(d.index ?? i, 0, `${where}.index`),
       id,
-      component: text(d.component, dot < 0 ? id : id.slice(0, dot)),
-      name: text(d.name, id.slice(dot + 1)),
-      doc: text(d.doc),
+      component: word(d.component, dot < 0 ? id : id.slice(0, dot)),
+      name: word(d.name, id.slice(dot + 1)),
+      doc: word(d.doc),
       kind,
-      material: text(d.material),
+      material: word(d.material),
       pointsPerLine,
       meshes,
-      rateChannel: text(d.rate_channel),
+      rateChannel: word(d.rate_channel),
       count: Math.max(0, finite(d.count) ?? 0),
       radiusM: Math.max(0, finite(d.radius_m) ?? 0) || 0.0003,
-      value: { doc: text(value.doc), unit: text(value.unit), min: finite(value.min), max: finite(value.max) },
-      text: text(d.text, '{}'),
+      value: { doc: word(value.doc), unit: word(value.unit), min: finite(value.min), max: finite(value.max) },
+      text: word(d.text, '{}'),
       vertices: kind === 'patch' ? meshes[0]!.vertices : 0,
     };
   });
@@ -224,7 +219,7 @@ export function parseMaterials(json: unknown): Map<string, MaterialData> {
   for (const [name, m] of Object.entries(json)) {
     if (!isObject(m)) throw new DataError(`scene.json: material ${name} is not an object`);
     out.set(name, {
-      style: text(m.style, plain.style),
+      style: word(m.style, plain.style),
       rgba: colour(m.rgba) ?? plain.rgba,
       roughness: share(m.roughness, plain.roughness),
       metalness: share(m.metalness, plain.metalness),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the engine's tutor says (tutor of hud_json), read with care: it is text from outside.
 
+import { finite, isObject, word } from '../json_values';
+
 /** A hint with the value that came near its limit. */
 export interface HintView {
   id: string;
@@ -26,11 +28,6 @@ export interface TutorView {
   /** All cues, once the exercise has ended. */
   cues: HintView[];
 }
-
-type Json = Record<string, unknown>;
-const isObject = (v: unknown): v is Json => typeof v === 'object' && v !== null && !Array.isArray(v);
-const word = (v: unknown): string => (typeof v === 'string' ? v : '');
-const finite = (v: unknown): number | null => (typeof v === 'number' && Number.isFinite(v) ? v : null);
 
 function hint(v: unknown): HintView | null {
   if (!isObject(v) || word(v.text) === '') return null;
