@@ -132,7 +132,7 @@ list(APPEND engine_src ${CMAKE_BINARY_DIR}/generated/new_plugin_files.cpp
 list(FILTER engine_src EXCLUDE REGEX "/engine/main\\.cpp$")
 if(engine_src)
   add_library(insula_engine STATIC ${engine_src})
-  target_link_libraries(insula_engine PUBLIC insula_plugins insula_haptics insula_servo insula_store insula_curriculum
+  target_link_libraries(insula_engine PUBLIC insula_plugins insula_haptics insula_servo insula_progress
     PRIVATE OpenSSL::Crypto)
   target_compile_definitions(insula_engine PRIVATE INSULA_VERSION="${PROJECT_VERSION}")
 endif()
@@ -162,7 +162,7 @@ insula_glob(gateway_src viewer/gateway/*.cpp)
 list(FILTER gateway_src EXCLUDE REGEX "/gateway/main\\.cpp$")
 if(gateway_src)
   add_library(insula_gateway STATIC ${gateway_src})
-  target_link_libraries(insula_gateway PUBLIC insula_bus insula_store Boost::boost)
+  target_link_libraries(insula_gateway PUBLIC insula_bus insula_progress Boost::boost)
   target_compile_definitions(insula_gateway PRIVATE INSULA_PAGE_DIR="${PROJECT_SOURCE_DIR}/viewer/page/dist")
   add_executable(gateway viewer/gateway/main.cpp)
   target_link_libraries(gateway PRIVATE insula_gateway CLI11::CLI11)

@@ -15,6 +15,8 @@ class CurriculumFiles final : public CurriculumSources {
   const SceneFacts& scene(const std::filesystem::path& file) override;
   std::optional<BandFact> band(const std::filesystem::path& bands, const std::string& group, const SceneFacts& scene,
                                const MetricFact& metric, const std::string& hand, std::string& error) override;
+  /// Those that were asked for, by file.
+  const std::map<std::filesystem::path, SceneFacts>& scenes() const { return scenes_; }
 
  private:
   const Registry& registry_;

@@ -66,15 +66,14 @@ ChildSpec haptic_child(const PlayOptions& options, const fs::path& folder) {
   return server;
 }
 
-/// The options for another exercise or person. A motion and bands belong to the first scene, and its mode is chosen on
-/// the page.
 PlayOptions chosen_options(const PlayOptions& first, const ChosenExercise& choice) {
   PlayOptions out = first;
   out.scene = scene_file(choice.scene);
   std::erase_if(out.fields, [](const std::string& f) { return f.starts_with("person="); });
   if (!choice.person.empty()) out.fields.push_back("person=" + choice.person);
   if (choice.scene != scene_name(first.scene)) out.motion.clear(), out.bands.clear(), out.band_group.clear();
-  out.mode.clear();
+  out.mode = choice.mode;
+  if (choice.seed) out.seed = *choice.seed;
   return out;
 }
 
@@ -93,7 +92,8 @@ ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, cons
   for (const std::string& host : options.hosts) command.insert(command.end(), {"--host", host});
   if (!options.store.empty()) command.insert(command.end(), {"--store", options.store.string()});
   if (!files.catalogue.empty())
-    command.insert(command.end(), {"--catalogue", files.catalogue.string(), "--choice", files.choice.string()});
+    command.insert(command.end(), {"--catalogue", files.catalogue.string(), "--choice", files.choice.string(),
+                                   "--curricula", files.curricula.string()});
   if (options.start_page) command.emplace_back("--start");
   gateway.command = command;
   gateway.command.insert(gateway.command.end(), {"--port", std::to_string(options.port)});
@@ -101,6 +101,10 @@ ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, cons
     constexpr std::string_view serving = "serving ", choose = "choose ";
     if (line.starts_with(choose)) {
       lines.chosen(line.substr(choose.size()));
+      return false;
+    }
+    if (line == "curricula") {
+      lines.curricula();
       return false;
     }
     if (!line.starts_with(serving)) return true;

@@ -21,8 +21,10 @@ FOLDERS = {
     "haptic_server": {"core", "core/bus", "core/haptics"},
     "training/store": {"core"},
     "training/curriculum": {"core"},
-    "engine": {"core", "core/bus", "core/haptics", "haptic_server", "training/store", "training/curriculum"},
-    "viewer/gateway": {"core", "core/bus", "training/store"},
+    "training/progress": {"core", "training/store", "training/curriculum"},
+    "engine": {"core", "core/bus", "core/haptics", "haptic_server", "training/store", "training/curriculum",
+               "training/progress"},
+    "viewer/gateway": {"core", "core/bus", "training/store", "training/curriculum", "training/progress"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include "([\w./]+)"')
 

@@ -32,6 +32,10 @@ constexpr const char* migrations[] = {
        CREATE TABLE run_faults (
          run INTEGER NOT NULL REFERENCES runs ON DELETE CASCADE, fault TEXT NOT NULL, text TEXT NOT NULL,
          count INTEGER NOT NULL, PRIMARY KEY (run, fault)) WITHOUT ROWID;)",
+    // 2: the curriculum that a person follows.
+    R"(CREATE TABLE followed_curricula (
+         person INTEGER PRIMARY KEY REFERENCES persons ON DELETE CASCADE, curriculum TEXT NOT NULL,
+         chosen_ms INTEGER NOT NULL);)",
 };
 
 int version_of(const Database& database) {

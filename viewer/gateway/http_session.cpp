@@ -125,14 +125,14 @@ void HttpSession::answer_training(const Request& request, const std::vector<std:
   const std::string_view query = mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
   if (request.method() == http::verb::post) {
     if (!same_site(request)) return refuse(http::status::forbidden, "foreign origin");
-    const TrainingApi::Answer answer = training_.post(parts[1], request.body());
+    const ApiAnswer answer = training_.post(parts[1], request.body());
     return send_text(request, http::status(answer.status), "application/json", answer.json);
   }
   if (parts[1] == "picture") {
     const fs::path file = training_.picture(query_value(query, "scene"));
     return file.empty() ? refuse(http::status::not_found, "no picture") : send_file(request, file, "no-cache");
   }
-  const TrainingApi::Answer answer = training_.get(parts[1], query);
+  const ApiAnswer answer = training_.get(parts[1], query);
   send_text(request, http::status(answer.status), "application/json", answer.json);
 }
 

@@ -3,6 +3,7 @@
 import { el } from '../hud/dom';
 import type { Api, Curve, Exercise } from './api';
 import { curvePicture } from './curve';
+import { learningBox } from './learning';
 
 const hands: Readonly<Record<string, string>> = { left: ', left hand', right: ', right hand', both: '' };
 
@@ -35,6 +36,7 @@ function curveBox(c: Curve): HTMLElement {
     el('h3', {}, name),
     curvePicture(c, `${name}: ${values.length} attempts, last ${number(c, last)}, best ${number(c, best)}`),
     el('p', {}, `last ${number(c, last)}, best ${number(c, best)}, ${c.better === 'high' ? 'more' : 'less'} is better`),
+    ...learningBox(c, name),
   );
 }
 
