@@ -132,8 +132,8 @@ list(APPEND engine_src ${CMAKE_BINARY_DIR}/generated/new_plugin_files.cpp
 list(FILTER engine_src EXCLUDE REGEX "/engine/main\\.cpp$")
 if(engine_src)
   add_library(insula_engine STATIC ${engine_src})
-  target_link_libraries(insula_engine PUBLIC insula_plugins insula_haptics insula_servo insula_store insula_xapi
-    insula_curriculum PRIVATE OpenSSL::Crypto)
+  target_link_libraries(insula_engine PUBLIC insula_plugins insula_haptics insula_servo insula_progress insula_xapi
+    PRIVATE OpenSSL::Crypto)
   target_compile_definitions(insula_engine PRIVATE INSULA_VERSION="${PROJECT_VERSION}")
 endif()
 if(EXISTS ${PROJECT_SOURCE_DIR}/engine/main.cpp)
@@ -162,7 +162,7 @@ insula_glob(gateway_src viewer/gateway/*.cpp)
 list(FILTER gateway_src EXCLUDE REGEX "/gateway/main\\.cpp$")
 if(gateway_src)
   add_library(insula_gateway STATIC ${gateway_src})
-  target_link_libraries(insula_gateway PUBLIC insula_bus insula_store Boost::boost spdlog::spdlog
+  target_link_libraries(insula_gateway PUBLIC insula_bus insula_progress Boost::boost spdlog::spdlog
                         OpenSSL::SSL OpenSSL::Crypto)
   target_compile_definitions(insula_gateway PRIVATE INSULA_PAGE_DIR="${PROJECT_SOURCE_DIR}/viewer/page/dist")
   add_executable(gateway viewer/gateway/main.cpp)

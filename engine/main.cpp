@@ -70,8 +70,9 @@ void add_scene_commands(Options& c) {
 }
 
 void add_texts(Options& c) {
-  auto* command = c.app.add_subcommand("texts", "what persons read of scenes, as JSON, for those who translate it");
-  command->add_option("scene", c.scenes, "scene files")->required();
+  auto* command =
+      c.app.add_subcommand("texts", "what persons read of scenes and curricula, as JSON, for those who translate it");
+  command->add_option("file", c.scenes, "scenes and curricula")->required();
   command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_texts(x, c.scenes); }; });
 }
 

@@ -145,6 +145,19 @@ class Exercise final : public Component {
   static constexpr std::string_view kind_name = "exercise";
   Param<std::string> title{this, {.name = "title", .doc = "name of the exercise"}};
   Param<std::string> text{this, {.name = "text", .fallback = "", .doc = "what the trainee is to do"}};
+  Param<Choice> site{this,
+                     {.name = "site",
+                      .fallback = "",
+                      .choices = {"ophthalmic", "posterior communicating", "anterior choroidal", "carotid bifurcation",
+                                  "middle cerebral", "anterior communicating", "pericallosal", "basilar tip",
+                                  "superior cerebellar", "posterior inferior cerebellar", "other"},
+                      .doc = "artery or junction at which the aneurysm is; pages group cases by it"}};
+  Param<int> difficulty{this,
+                        {.name = "difficulty",
+                         .fallback = "0",
+                         .min = "0",
+                         .max = "5",
+                         .doc = "from 1, for a first case, to 5, for an expert; 0: not said. Pages sort cases by it"}};
 
   void connect(PrepareContext& context, const Simulation& simulation);
   /// After each step: the rules.

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// insula texts: what persons read of scenes, for those who translate it.
+// insula texts: what persons read of scenes and curricula, for those who translate it.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <regex>
 #include <set>
 
+#include "engine/authoring/curriculum_sources.h"
 #include "engine/command_line/play.h"
 #include "engine/live/frame.h"
+#include "training/curriculum/loader.h"
 
 namespace insula {
 namespace {
@@ -107,12 +109,30 @@ void collect_commands(TextCollector& to, const Scene& scene) {
     }
 }
 
+bool collect_curriculum(TextCollector& to, const std::filesystem::path& file, const CommandContext& context) {
+  CurriculumFiles sources(context.registry);
+  const CurriculumResult loaded = load_curriculum(file, sources);
+  context.err << loaded.diagnostics.format();
+  if (!loaded.curriculum) return false;
+  const auto add = [&](const std::string& text) { to.add("curriculum", text); };
+  add(loaded.curriculum->title), add(loaded.curriculum->text);
+  for (const Module& module : loaded.curriculum->modules) {
+    add(module.title), add(module.text);
+    for (const Task& task : module.tasks) add(task.title), add(task.text);
+  }
+  return true;
+}
+
 }  // namespace
 
-int cmd_texts(const CommandContext& context, const std::vector<std::filesystem::path>& scenes) {
+int cmd_texts(const CommandContext& context, const std::vector<std::filesystem::path>& files) {
   TextCollector texts;
   int status = 0;
-  for (const auto& file : scenes) {
+  for (const auto& file : files) {
+    if (is_curriculum_file(file)) {
+      if (!collect_curriculum(texts, file, context)) status = 2;
+      continue;
+    }
     const SimulationResult loaded = load_simulation(file, context.registry);
     context.err << loaded.diagnostics.format();
     if (!loaded.simulation) {

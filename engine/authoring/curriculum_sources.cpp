@@ -10,6 +10,7 @@
 #include "core/sim/reference_bands.h"
 #include "core/sim/settings.h"
 #include "core/sim/simulation.h"
+#include "engine/live/project_folder.h"
 
 namespace insula {
 namespace {
@@ -40,7 +41,7 @@ SceneFacts facts_of(const std::filesystem::path& file, const Registry& registry)
     facts.has_exercise = exercise != nullptr;
     if (!exercise) return facts;
     for (const GoalState& goal : exercise->log().goals()) facts.goals.push_back(goal.id);
-    for (const FaultState& fault : exercise->log().faults()) facts.faults.push_back(fault.id);
+    for (const FaultState& fault : exercise->log().faults()) facts.faults.push_back({fault.id, fault.text});
     add_metrics(*exercise, facts.metrics);
   } catch (const std::exception& e) {
     facts.diagnostics.error({file.generic_string(), 0, 0}, e.what());
@@ -49,6 +50,11 @@ SceneFacts facts_of(const std::filesystem::path& file, const Registry& registry)
 }
 
 }  // namespace
+
+std::filesystem::path CurriculumFiles::shipped_folder() const {
+  const std::filesystem::path project = project_folder();
+  return project.empty() ? project : project / "curricula";
+}
 
 const SceneFacts& CurriculumFiles::scene(const std::filesystem::path& file) {
   const auto found = scenes_.find(file);

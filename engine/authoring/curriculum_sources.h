@@ -12,9 +12,12 @@ namespace insula {
 class CurriculumFiles final : public CurriculumSources {
  public:
   explicit CurriculumFiles(const Registry& registry) : registry_(registry) {}
+  std::filesystem::path shipped_folder() const override;
   const SceneFacts& scene(const std::filesystem::path& file) override;
   std::optional<BandFact> band(const std::filesystem::path& bands, const std::string& group, const SceneFacts& scene,
                                const MetricFact& metric, const std::string& hand, std::string& error) override;
+  /// Those that were asked for, by file.
+  const std::map<std::filesystem::path, SceneFacts>& scenes() const { return scenes_; }
 
  private:
   const Registry& registry_;

@@ -15,6 +15,7 @@
 #include "core/bus/lcm_bus.h"
 #include "core/scene/loader.h"
 #include "core/sim/exercise.h"
+#include "engine/command_line/curriculum_reader.h"
 #include "engine/command_line/play.h"
 #include "engine/command_line/play_children.h"
 #include "engine/live/catalogue.h"
@@ -153,7 +154,7 @@ bool sender_ok(const CommandContext& context, const PlayOptions& options) {
 /// Writes what exercises there are. Without a folder to write to, pages show the running one only.
 StartPageFiles start_page_files(const PlayOptions& options, const fs::path& bundles) {
   if (bundles.empty() || options.view) return {};
-  const StartPageFiles files{bundles / "catalogue.json", bundles / "choice.json"};
+  const StartPageFiles files{bundles / "catalogue.json", bundles / "choice.json", bundles / "curricula.json"};
   const std::string text = catalogue_json(catalogue(project_folder()))
                                .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   return leave_notice(files.catalogue, text) ? files : StartPageFiles{};
@@ -209,11 +210,13 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
   };
   ExerciseChoice choice({scene_name(options.scene), person_of(options)}, files.choice, command_of,
                         [&](const ChosenExercise& c) { reload.watch(scene_file(c.scene), on_standby(command_of(c))); });
+  CurriculumReader curricula(program, options, files.curricula, print);
   SupervisorSettings settings;
   settings.duration_s = options.duration_s;
   Supervisor* running = nullptr;
   settings.look = [&] {
     choice.look(*running);
+    curricula.look();
     if (options.reload) reload.look(*running);
   };
   Supervisor supervisor(settings, print);
@@ -226,7 +229,8 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
   };
   // The viewer starts first, so that it is available while the engine loads.
   supervisor.add(
-      gateway_child(options, folder, files, pins, {serving, [&](std::string_view json) { choice.ask(json); }}));
+      gateway_child(options, folder, files, pins,
+                    {serving, [&](std::string_view json) { choice.ask(json); }, [&] { curricula.begin(); }}));
   if (!options.view) supervisor.add(haptic_child(options, folder));
   supervisor.add(engine);
   if (!options.lrs.empty()) supervisor.add(sender_child(options, program));

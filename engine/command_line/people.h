@@ -3,30 +3,41 @@
 // forget, backup.
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/command_line/commands.h"
 #include "engine/command_line/run_command_line.h"
-#include "training/store/records.h"
+#include "training/curriculum/evaluate.h"
+#include "training/store/store.h"
 
 namespace insula {
 
 struct PeopleOptions {
   std::filesystem::path data;                  ///< folder of the user's data; empty: the platform's
   training::Person person;                     ///< add
-  std::filesystem::path curriculum;            ///< progress
-  std::string pseudonym;                       ///< progress, forget; export: only this person, empty: all
-  std::filesystem::path output;                ///< export: folder; backup: file
+  std::filesystem::path curriculum;            ///< progress, certificate
+  std::string pseudonym;                       ///< progress, certificate, forget; export: only this person, empty: all
+  std::filesystem::path output;                ///< export: folder; backup, curricula: file
   std::string format = "csv";                  ///< export: "csv" or "json"
   std::vector<std::filesystem::path> folders;  ///< forget: of recordings and reports; empty: those of play
-  bool json = false;                           ///< list, progress
+  bool json = false;                           ///< list, progress, certificate, curricula
   std::filesystem::path xapi;                  ///< export: file for statements; empty: none
   std::string lrs;                             ///< send: address of the learning record store; empty: nothing is sent
   std::filesystem::path login;                 ///< send: file with NAME:PASSWORD; empty: of the environment
   std::string home_page;                       ///< send: of this installation; empty: as it is
   bool watch = false, queue_all = false;       ///< send
 };
+
+/// Where a person stands in a curriculum, with the store it was read from.
+struct StandingInCurriculum {
+  Curriculum curriculum;
+  Progress progress;
+  training::Store store;
+};
+/// None if the curriculum has errors or the person is not known; both are printed.
+std::optional<StandingInCurriculum> standing_in(const CommandContext& context, const PeopleOptions& options);
 
 /// Status 0; 2 if the pseudonym is in use or a field is wrong.
 int cmd_people_add(const CommandContext& context, const PeopleOptions& options);
@@ -45,6 +56,12 @@ int cmd_people_forget(const CommandContext& context, const PeopleOptions& option
 /// Says how far a person has come in a curriculum, and what is next. Status 0; 2 if the curriculum has errors or the
 /// person is not known.
 int cmd_people_progress(const CommandContext& context, const PeopleOptions& options);
+/// Prints the certificate of a curriculum that the person has passed. Status 0; 2 if it is not passed, has errors, or
+/// the person is not known.
+int cmd_people_certificate(const CommandContext& context, const PeopleOptions& options);
+/// Lists the curricula that may be followed, or writes all about them as JSON. One with errors does not hide the
+/// others. Status 0; 1 if the file cannot be written.
+int cmd_curricula(const CommandContext& context, const PeopleOptions& options);
 /// Copies the store into one file, also while it is in use.
 int cmd_people_backup(const CommandContext& context, const PeopleOptions& options);
 

@@ -35,10 +35,17 @@ void add_people_commands(CommandLine& line) {
 
   add("list", "all persons, with the number of their runs", cmd_people_list)->add_flag("--json", o->json, "as JSON");
 
-  auto* progress = add("progress", "how far a person has come in a curriculum, and what is next", cmd_people_progress);
-  progress->add_option("pseudonym", o->pseudonym, "of the person")->required();
-  progress->add_option("curriculum", o->curriculum, "its file")->required();
-  progress->add_flag("--json", o->json, "as JSON");
+  for (auto* command :
+       {add("progress", "how far a person has come in a curriculum, and what is next", cmd_people_progress),
+        add("certificate", "what a person who has passed a curriculum can show", cmd_people_certificate)}) {
+    command->add_option("pseudonym", o->pseudonym, "of the person")->required();
+    command->add_option("curriculum", o->curriculum, "its file")->required();
+    command->add_flag("--json", o->json, "as JSON");
+  }
+
+  auto* curricula = add("curricula", "the curricula that a person may follow", cmd_curricula);
+  curricula->add_flag("--json", o->json, "all about them, as JSON");
+  curricula->add_option("-o,--output", o->output, "file to write the JSON to");
 
   auto* exported = add("export", "tables of persons, runs, metrics and faults, or statements", cmd_people_export);
   exported->add_option("-o,--output", o->output, "folder to write tables to");

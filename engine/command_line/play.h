@@ -48,9 +48,9 @@ int cmd_play(const CommandContext& context, const PlayOptions& options);
 /// Lists the inventory of a scene. Status 0, or 2 if the scene has errors.
 int cmd_view_list(const CommandContext& context, const std::filesystem::path& scene);
 
-/// Prints what persons read of scenes as JSON, each text once: [{"text": ..., "kind": "goal"}]. Status 0, or 2 if a
-/// scene has errors; then its texts are missing.
-int cmd_texts(const CommandContext& context, const std::vector<std::filesystem::path>& scenes);
+/// Prints what persons read of scenes and curricula as JSON, each text once: [{"text": ..., "kind": "goal"}]. Status 0,
+/// or 2 if a file has errors; then its texts are missing.
+int cmd_texts(const CommandContext& context, const std::vector<std::filesystem::path>& files);
 
 /// Folder of the reports if none is given: `reports` in the given folder of the user's data; if that is empty too,
 /// insula-reports in the home folder, or in the current one.

@@ -77,15 +77,14 @@ ChildSpec sender_child(const PlayOptions& options, const fs::path& program) {
   return sender;
 }
 
-/// The options for another exercise or person. A motion and bands belong to the first scene, and its mode is chosen on
-/// the page.
 PlayOptions chosen_options(const PlayOptions& first, const ChosenExercise& choice) {
   PlayOptions out = first;
   out.scene = scene_file(choice.scene);
   std::erase_if(out.fields, [](const std::string& f) { return f.starts_with("person="); });
   if (!choice.person.empty()) out.fields.push_back("person=" + choice.person);
   if (choice.scene != scene_name(first.scene)) out.motion.clear(), out.bands.clear(), out.band_group.clear();
-  out.mode.clear();
+  out.mode = choice.mode;
+  if (choice.seed) out.seed = *choice.seed;
   return out;
 }
 
@@ -104,7 +103,8 @@ ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, cons
   for (const std::string& host : options.hosts) command.insert(command.end(), {"--host", host});
   if (!options.store.empty()) command.insert(command.end(), {"--store", options.store.string()});
   if (!files.catalogue.empty())
-    command.insert(command.end(), {"--catalogue", files.catalogue.string(), "--choice", files.choice.string()});
+    command.insert(command.end(), {"--catalogue", files.catalogue.string(), "--choice", files.choice.string(),
+                                   "--curricula", files.curricula.string()});
   const std::vector<std::string> room = room_arguments(options.room, pins, options.data);
   command.insert(command.end(), room.begin(), room.end());
   if (options.start_page) command.emplace_back("--start");
@@ -114,6 +114,10 @@ ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, cons
     constexpr std::string_view serving = "serving ", choose = "choose ";
     if (line.starts_with(choose)) {
       lines.chosen(line.substr(choose.size()));
+      return false;
+    }
+    if (line == "curricula") {
+      lines.curricula();
       return false;
     }
     if (!line.starts_with(serving)) return true;

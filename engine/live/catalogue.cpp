@@ -19,6 +19,11 @@ std::string value_of(const Element& element, std::string_view name) {
   return a ? a->value : std::string();
 }
 
+/// A scene is not checked here, so it may have anything there.
+int difficulty_of(const std::string& text) {
+  return text.size() == 1 && text[0] >= '1' && text[0] <= '5' ? text[0] - '0' : 0;
+}
+
 /// Title and text, if the file is a scene with an exercise.
 std::optional<CatalogueEntry> read_entry(const fs::path& file) {
   std::string text;
@@ -32,6 +37,8 @@ std::optional<CatalogueEntry> read_entry(const fs::path& file) {
     out.title = value_of(*document.root, "title");
     if (out.title.empty()) out.title = value_of(*child, "title");
     out.text = value_of(*child, "text");
+    out.site = value_of(*child, "site");
+    out.difficulty = difficulty_of(value_of(*child, "difficulty"));
     return out;
   }
   return std::nullopt;
@@ -64,8 +71,13 @@ std::vector<CatalogueEntry> catalogue(const fs::path& folder) {
 nlohmann::ordered_json catalogue_json(const std::vector<CatalogueEntry>& entries) {
   auto out = nlohmann::ordered_json::array();
   for (const CatalogueEntry& e : entries)
-    out.push_back(
-        {{"scene", e.scene}, {"group", e.group}, {"title", e.title}, {"text", e.text}, {"picture", e.picture}});
+    out.push_back({{"scene", e.scene},
+                   {"group", e.group},
+                   {"title", e.title},
+                   {"text", e.text},
+                   {"site", e.site},
+                   {"difficulty", e.difficulty},
+                   {"picture", e.picture}});
   return out;
 }
 

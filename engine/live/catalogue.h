@@ -13,6 +13,8 @@ struct CatalogueEntry {
   std::string group;    ///< "skills", "training" or "cases"
   std::string title;    ///< of the scene
   std::string text;     ///< what is to be done
+  std::string site;     ///< of the aneurysm, as Exercise has it; empty: not said
+  int difficulty = 0;   ///< from 1 to 5; 0: not said
   std::string picture;  ///< file beside the scene, NAME.jpg; empty: there is none
 };
 

@@ -2,8 +2,10 @@
 // Another exercise, or another person, while a session runs. The start page asks for it through the gateway. A second
 // engine loads the scene beside the first one and takes over when it is ready, as after a scene was saved.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,8 +15,11 @@
 namespace insula {
 
 struct ChosenExercise {
-  std::string scene;   ///< name (project_folder.h)
-  std::string person;  ///< pseudonym; empty: a guest
+  std::string scene;                       ///< name (project_folder.h)
+  std::string person;                      ///< pseudonym; empty: a guest
+  std::string mode = {};                   ///< "practice" or "test"; empty: it is chosen on the page
+  std::optional<std::uint32_t> seed = {};  ///< of the complications; none: that of the session
+  std::string request = {};                ///< name by which the page that asks knows its own request; may be empty
 };
 
 class ExerciseChoice {
@@ -26,7 +31,8 @@ class ExerciseChoice {
   ExerciseChoice(ChosenExercise present, std::filesystem::path state, Command command,
                  std::function<void(const ChosenExercise&)> taken);
 
-  /// A request as JSON: {"scene", "person"}. Anything else is ignored, since a page may send anything.
+  /// A request as JSON: {"scene", "person"} and perhaps "mode", "seed", "request". Anything else is ignored, since a
+  /// page may send anything.
   void ask(std::string_view json);
   /// Must be called repeatedly.
   void look(Supervisor& supervisor);
@@ -42,7 +48,9 @@ class ExerciseChoice {
   bool waiting_ = false;  ///< wanted_ has not been offered yet
 };
 
-/// {"scene", "person", "state": "running" | "loading" | "refused", "text"}.
+/// The choice in a request; none if it is wrong.
+std::optional<ChosenExercise> read_choice(std::string_view json);
+/// {"scene", "person", "mode", "request", "state": "running" | "loading" | "refused", "text"}.
 std::string state_json(const ChosenExercise& choice, const char* state, const std::string& text);
 
 }  // namespace insula

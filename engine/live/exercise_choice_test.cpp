@@ -80,6 +80,18 @@ TEST_F(ExerciseChoiceTest, TakesOverTellsPagesAndSurvivesTheDeathOfTheNewEngine)
       << "the engine that is started again has the chosen exercise";
 }
 
+TEST_F(ExerciseChoiceTest, ModeAndSeedAreTakenWhenTheyAreWhole) {
+  const auto read = read_choice(R"({"scene":"b.xml","person":"P07","mode":"test","seed":21,"request":"r1"})");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->mode, "test");
+  EXPECT_EQ(read->seed, 21u);
+  EXPECT_EQ(json::parse(state_json(*read, "running", ""))["request"], "r1");
+  EXPECT_FALSE(read_choice(R"({"scene":"b.xml","person":""})")->seed);
+  for (const char* bad : {R"("mode":"demonstration")", R"("mode":"waiting")", R"("mode":1)", R"("seed":0)",
+                          R"("seed":-1)", R"("seed":1.5)", R"("seed":"7")", R"("seed":2147483648)", R"("request":7)"})
+    EXPECT_FALSE(read_choice(std::string(R"({"scene":"b.xml","person":"",)") + bad + "}")) << bad;
+}
+
 TEST_F(ExerciseChoiceTest, ARefusedSceneLeavesTheOldOneAndSaysWhy) {
   ExerciseChoice choice(
       {"a.xml", ""}, state_file(),
@@ -99,7 +111,8 @@ TEST_F(ExerciseChoiceTest, TheCatalogueHasScenesWithAnExercise) {
   folder_.write("scenes/training/motion.csv", "");
   folder_.write("scenes/training/broken.xml", "<scene><exercise");
   folder_.write("scenes/parts/c.xml", R"(<part><exercise id="e"/></part>)");
-  folder_.write("scenes/cases/mine/3_c.xml", R"(<scene title="C"><exercise id="e"/></scene>)");
+  folder_.write("scenes/cases/mine/3_c.xml",
+                R"(<scene title="C"><exercise id="e" site="middle cerebral" difficulty="4"/></scene>)");
   folder_.write("scenes/cases/bench.xml", R"(<scene title="No exercise"/>)");
   const auto found = catalogue(folder_.path());
   ASSERT_EQ(found.size(), 3u);
@@ -109,6 +122,9 @@ TEST_F(ExerciseChoiceTest, TheCatalogueHasScenesWithAnExercise) {
   EXPECT_EQ(found[1].text, "Do <it>");
   EXPECT_EQ(found[1].picture, (folder_.path() / "scenes/training/2_b.jpg").string());
   EXPECT_EQ(found[2].group, "cases");
+  EXPECT_EQ(found[2].site, "middle cerebral");
+  EXPECT_EQ(found[2].difficulty, 4);
+  EXPECT_EQ(found[1].difficulty, 0) << "not said";
   EXPECT_TRUE(catalogue(folder_.path() / "nowhere").empty());
 }
 

@@ -22,6 +22,7 @@ FOLDERS = {
     "training/store": {"core"},
     "training/xapi": {"core", "training/store"},
     "training/curriculum": {"core"},
+    "training/progress": {"core", "training/store", "training/curriculum"},
     "engine": {
         "core",
         "core/bus",
@@ -30,8 +31,9 @@ FOLDERS = {
         "training/store",
         "training/xapi",
         "training/curriculum",
+        "training/progress",
     },
-    "viewer/gateway": {"core", "core/bus", "training/store"},
+    "viewer/gateway": {"core", "core/bus", "training/store", "training/curriculum", "training/progress"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include "([\w./]+)"')
 

@@ -158,7 +158,10 @@ TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
   const std::string input = (folder.path() / "vessel.stl").string();
   std::string said;
   for (const char* out : {"a", "b"})
-    ASSERT_EQ(command({"new", "tube", input, "--out", (folder.path() / out).string(), "--vertices", "900"}, &said), 0)
+    ASSERT_EQ(command({"new", "tube", input, "--out", (folder.path() / out).string(), "--vertices", "900", "--site",
+                       "basilar tip", "--difficulty", "4"},
+                      &said),
+              0)
         << said;
   const CaseFolder made{folder.path() / "a/tube", "tube"};
   const auto first = files_of(made.path);
@@ -171,6 +174,7 @@ TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
     EXPECT_EQ(m.message, "") << file;
     EXPECT_TRUE(m.finite);
     EXPECT_GT(m.step_ms, 0);
+    EXPECT_NE(read_file_bytes(file).find("<exercise site=\"basilar tip\" difficulty=\"4\""), std::string::npos) << file;
   }
   const std::string report = read_file_bytes(made.path / "report.html");
   for (const char* part : {"<svg", "worst angle", "dome to neck", "room to the frontal", "closed by flat caps",
@@ -197,6 +201,8 @@ TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
   EXPECT_NE(why.find("exists already"), std::string::npos);
   EXPECT_EQ(command({"new", "../tube", input}, &why), 2);
   EXPECT_EQ(command({"wall"}, &why), 2);
+  EXPECT_EQ(command({"scenes", made.path.string(), "--site", "left leg"}, &why), 2);
+  EXPECT_NE(why.find("basilar tip"), std::string::npos) << why;
 }
 
 TEST(MadeCase, NeckByTwoPoints) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/base/input_error.h"
+#include "core/sim/exercise.h"
 #include "tools/case_builder/brain.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/place.h"
@@ -166,6 +167,12 @@ void place_options(CLI::App* app, Options& o) {
 }
 
 void scene_options(CLI::App* app, Options& o) {
+  const Exercise declared;
+  app->add_option("--site", o.site, "where the aneurysm is; the start page groups cases by it")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(declared.site.spec().choices.begin(), declared.site.spec().choices.end())));
+  app->add_option("--difficulty", o.difficulty, "from 1, for a first case, to 5, for an expert")
+      ->check(CLI::Range(1, 5));
   app->add_option("--clip", o.clip, "clip for the neck, of meshes/clips (default: chosen)");
   quantity<Length>(app, "--lift", [&o](double mm) { o.lift = mm; },
                    {.bare = "mm", .min = "-10 mm", .max = "10 mm", .doc = "of the blades over the neck's plane"});

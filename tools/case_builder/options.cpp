@@ -51,6 +51,8 @@ Json to_json(const Options& o) {
   j["spin"] = o.spin;
   j["keep_spin"] = o.keep_spin;
   j["lobes"] = o.lobes;
+  if (!o.site.empty()) j["site"] = o.site;
+  if (o.difficulty > 0) j["difficulty"] = o.difficulty;
   j["clip"] = o.clip;
   put(j, "lift", o.lift);
   put(j, "slide", o.slide);
@@ -88,6 +90,8 @@ Options options_from_json(const Json& j) {
     take(j, "spin", o.spin);
     take(j, "keep_spin", o.keep_spin);
     take(j, "lobes", o.lobes);
+    take(j, "site", o.site);
+    take(j, "difficulty", o.difficulty);
     take(j, "clip", o.clip);
     take(j, "lift", o.lift);
     take(j, "slide", o.slide);

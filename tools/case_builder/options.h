@@ -49,6 +49,8 @@ struct Options {
   bool keep_spin = false;  ///< no other spin is tried
   std::string lobes;       ///< folder with lobes as those of meshes/lobes; empty: those
   // scenes
+  std::string site;                         ///< of the aneurysm, a choice of Exercise::site; empty: not said
+  int difficulty = 0;                       ///< 1 to 5; 0: not said
   std::string clip;                         ///< of meshes/clips; empty: chosen for the neck
   std::optional<double> lift, slide, turn;  ///< of the clip's blades at the neck, mm, mm, degrees; none: chosen
   bool rehearse = true;                     ///< exercise 2 gets scripted hands, which takes as long as they need

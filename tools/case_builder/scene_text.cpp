@@ -199,6 +199,14 @@ std::string opened(const SceneFacts& f, const char* comment, const char* title) 
                      training_only, f.name, title);
 }
 
+/// What the start page sorts cases by.
+std::string case_facts(const SceneFacts& f) {
+  std::string s;
+  if (!f.site.empty()) s += fmt::format(" site=\"{}\"", f.site);
+  if (f.difficulty > 0) s += fmt::format(" difficulty=\"{}\"", f.difficulty);
+  return s;
+}
+
 std::string opening_exercise(const SceneFacts& f) {
   std::string s =
       opened(f, "Exercise 1: open the Sylvian fissure over the case's vessel.", "opening the Sylvian fissure");
@@ -225,7 +233,9 @@ std::string opening_exercise(const SceneFacts& f) {
        "  <contact id=\"tools\" between=\"frontal temporal insula window left_suction right_dissector\" "
        "friction=\"0.1\" "
        "spacing=\"1 mm\" max_contacts=\"10\"/>\n\n"
-       "  <exercise id=\"sylvian_fissure\" title=\"Opening the Sylvian fissure\" text=\"Take hold of the temporal "
+       "  <exercise" +
+       case_facts(f) +
+       " id=\"sylvian_fissure\" title=\"Opening the Sylvian fissure\" text=\"Take hold of the temporal "
        "lobe with the suction tube and draw it down a little. Divide the strands with the dissector's edge, first at "
        "the surface, then deeper.\">\n"
        "    <goal_opening id=\"open\" text=\"Part the lips of the fissure by 5 mm and hold them\" "
@@ -262,7 +272,8 @@ std::string dissection_exercise(const SceneFacts& f) {
        "friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\"/>\n";
   s += weak_spot(f, "0.93 0.22 0.28", 12, 25);
   for (const std::string& kind : f.strand_sets) s += strands(f, kind);
-  s += "\n  <exercise id=\"aneurysm_dissection\" title=\"Dissection of the aneurysm\" text=\"Divide all strands with "
+  s += "\n  <exercise" + case_facts(f) +
+       " id=\"aneurysm_dissection\" title=\"Dissection of the aneurysm\" text=\"Divide all strands with "
        "the dissector's edge: turn the blade across each and sweep it slowly, the outermost first. Keep off the "
        "dome, and pull on nothing.\">\n"
        "    <goal_strands id=\"divide\" text=\"Divide all strands around the aneurysm\" fraction=\"1\"/>\n" +
@@ -282,7 +293,7 @@ std::string clipping_exercise(const SceneFacts& f) {
       f.clips.front());
   std::string s = opened(f, "Exercise 3: clip the aneurysm.", "clipping");
   s += "  <include file=\"field.xml\"/>\n\n";
-  s += fmt::format("  <exercise id=\"clipping\" title=\"Clipping\" text=\"{}\">\n", clipping_text);
+  s += fmt::format("  <exercise{} id=\"clipping\" title=\"Clipping\" text=\"{}\">\n", case_facts(f), clipping_text);
   s += judged(f, "3 s");
   s += "    <fault_rupture id=\"rupture\" text=\"The dome has ruptured\"/>\n" + limits(f, true) +
        metrics(f, false, true) + clip_metrics(f) +
@@ -297,7 +308,9 @@ std::string rupture_exercise(const SceneFacts& f) {
        "id=\"rupture_by_itself\" command=\"bleeding rupture\" probability=\"1\" from=\"8 s\" to=\"40 s\"/>\n"
        "    <complication id=\"pressure_rises\" command=\"heart set_systolic 150\" probability=\"0.3\" from=\"20 s\" "
        "to=\"120 s\"/>\n  </complications>\n\n"
-       "  <exercise id=\"rupture\" title=\"Rupture\" text=\"The dome bleeds. Hold the field dry with the suction "
+       "  <exercise" +
+       case_facts(f) +
+       " id=\"rupture\" title=\"Rupture\" text=\"The dome bleeds. Hold the field dry with the suction "
        "tube, put a temporary clip across the parent artery, then close the neck with a permanent clip, and take the "
        "temporary clip off within three minutes.\">\n"
        "    <goal_bleeding_stopped id=\"stop\" text=\"Stop the bleeding\" rate=\"4 ml/min\" hold=\"2 s\"/>\n"

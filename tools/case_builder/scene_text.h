@@ -25,6 +25,8 @@ struct SceneFacts {
   std::vector<std::string> strand_sets;
   double strand_share = 1;  ///< of the usual density of strands
   double strand_shift = 0;  ///< mm that their balls lie nearer to the surgeon
+  std::string site = {};    ///< Exercise::site
+  int difficulty = 0;       ///< Exercise::difficulty
   bool opened = true;       ///< exercise 1 has scripted hands
   bool rehearsed = false;   ///< exercise 2 has scripted hands
 };

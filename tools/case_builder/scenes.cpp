@@ -47,6 +47,7 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
 
   SceneFacts f;
   f.name = folder.name;
+  f.site = o.site, f.difficulty = o.difficulty;
   f.temporary = "temporary_straight";
   f.clips = {plan.clip.name};
   for (const char* menu : {"straight", "curved", "angled", "bayonet", "fenestrated_3_5_stem_90", "mini",

@@ -22,6 +22,7 @@ struct Attempt {
   std::optional<int> seed = {};
   /// Whether practice may have shown targets of a guide. A test never does.
   bool guided = true;
+  std::string run = {};  ///< name of the run that it comes from, for whoever shows it
 };
 
 }  // namespace insula

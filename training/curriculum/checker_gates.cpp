@@ -24,6 +24,13 @@ std::string limits_text(const Gate& gate) {
   return joined(parts, " and ");
 }
 
+template <class Fact>
+std::vector<std::string> ids_of(const std::vector<Fact>& facts) {
+  std::vector<std::string> out;
+  for (const Fact& f : facts) out.push_back(f.id);
+  return out;
+}
+
 /// The side of a figure of a group that shows less skill is the limit.
 void take_figure(double low, double high, Better better, Gate& gate) {
   if (better != Better::low) gate.at_least = low;
@@ -54,11 +61,14 @@ void CurriculumChecker::faults_gate(const FaultsGate& from, const SceneFacts* fa
   for (const std::string_view word : split_blanks(from.faults())) {
     const std::string id(word);
     gate.faults.push_back(id);
-    if (facts && std::find(facts->faults.begin(), facts->faults.end(), id) == facts->faults.end())
-      error(from, from.faults, "the exercise has no fault " + in_quotes(id) + suggestion(id, facts->faults));
+    if (!facts) continue;
+    const auto known =
+        std::find_if(facts->faults.begin(), facts->faults.end(), [&](const auto& f) { return f.id == id; });
+    if (known != facts->faults.end()) gate.fault_texts.push_back(known->text);
+    else error(from, from.faults, "the exercise has no fault " + in_quotes(id) + suggestion(id, ids_of(facts->faults)));
   }
   gate.text = gate.most_faults == 0 ? "No faults" : fmt::format("At most {} faults", gate.most_faults);
-  if (!gate.faults.empty()) gate.text += " of " + joined(gate.faults);
+  if (!gate.faults.empty()) gate.text += " of these: " + joined(gate.fault_texts);
 }
 
 void CurriculumChecker::metric_gate(const MetricGate& from, const SceneFacts* facts, const std::filesystem::path& scene,
@@ -74,23 +84,23 @@ void CurriculumChecker::metric_gate(const MetricGate& from, const SceneFacts* fa
   const MetricFact* metric = facts && from.metric.given() ? this->metric(from, *facts, gate.hand) : nullptr;
   if (!metric) return;
   gate.unit = metric->unit;
+  gate.metric_text = metric->text;
   gate.at_least = limit(from, from.at_least, *metric);
   gate.at_most = limit(from, from.at_most, *metric);
   if (gate.at_least && gate.at_most && *gate.at_least > *gate.at_most)
     error(from, from.at_least, "it is above at_most, so nothing satisfies the gate");
   if (group && !limits) band(from, *facts, *metric, scene, gate);
+  gate.group = from.group();
   gate.text = metric->text + (metric->of == Of::each_hand ? ", " + gate.hand + " hand" : "") + ": " +
-              limits_text(gate) + (group ? ", from the group " + in_quotes(from.group()) : "");
+              limits_text(gate) + (group ? ", from the group " + in_quotes(gate.group) : "");
 }
 
 const MetricFact* CurriculumChecker::metric(const MetricGate& from, const SceneFacts& facts, std::string& hand) {
   const auto found = std::find_if(facts.metrics.begin(), facts.metrics.end(),
                                   [&](const MetricFact& m) { return m.id == from.metric(); });
   if (found == facts.metrics.end()) {
-    std::vector<std::string> names;
-    for (const MetricFact& m : facts.metrics) names.push_back(m.id);
     error(from, from.metric,
-          "the exercise has no metric " + in_quotes(from.metric()) + suggestion(from.metric(), names));
+          "the exercise has no metric " + in_quotes(from.metric()) + suggestion(from.metric(), ids_of(facts.metrics)));
     return nullptr;
   }
   hand = from.hand();

@@ -18,12 +18,14 @@ struct Gate {
     metric,  ///< a metric from `at_least` to `at_most`
   };
   Kind kind = Kind::goals;
-  std::vector<std::string> faults = {};  ///< ids of those that count; empty: all
+  std::vector<std::string> faults = {};       ///< ids of those that count; empty: all
+  std::vector<std::string> fault_texts = {};  ///< of the same, for persons
   int most_faults = 0;
   std::string metric = {}, hand = {};                 ///< id and "left", "right" or "both"
   std::optional<double> at_least = {}, at_most = {};  ///< in `unit`; none: open on that side
   std::string unit = {};                              ///< in which the exercise shows the metric; may be empty
-  std::string text = {};                              ///< the condition in words
+  std::string metric_text = {}, group = {};  ///< what the metric is; whose figures the limits are, if a group's
+  std::string text = {};                     ///< the condition in words
   int in_a_row = 1;
   std::int64_t within_ms = 0;  ///< from the beginning of the first to that of the last attempt; 0: any time
 };

@@ -26,7 +26,9 @@ std::strong_ordering order_of(const std::map<std::pair<std::string, std::string>
 
 /// By time. Attempts of one moment have an order that does not depend on how they were given.
 bool earlier(const Attempt* a, const Attempt* b) {
-  const auto rest = [](const Attempt& x) { return std::tie(x.began_ms, x.scene, x.mode, x.done, x.seed, x.guided); };
+  const auto rest = [](const Attempt& x) {
+    return std::tie(x.began_ms, x.scene, x.mode, x.done, x.seed, x.guided, x.run);
+  };
   if (rest(*a) != rest(*b)) return rest(*a) < rest(*b);
   if (a->faults != b->faults) return a->faults < b->faults;
   return order_of(a->metrics, b->metrics) < 0;
@@ -92,6 +94,7 @@ TaskProgress task_progress(const TaskState& state, std::vector<std::string> lock
   out.locked_by = std::move(locks);
   out.gates = gates_of(state, now_ms);
   out.attempts = state.attempts;
+  for (const Attempt* a : state.counted) out.runs.push_back(a->run);
   out.attempts_to_level = state.attempts_to_level;
   out.passed_ms = state.passed_ms;
   out.repetitions = state.repetitions;

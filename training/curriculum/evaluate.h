@@ -49,6 +49,7 @@ struct TaskProgress {
   std::vector<std::string> locked_by;     ///< ids of the modules and tasks that must be passed before
   std::vector<GateProgress> gates;        ///< in the order of the task
   int attempts = 0;                       ///< those that counted
+  std::vector<std::string> runs;          ///< Attempt::run of those behind `gates`: since the beginning or a lapse
   std::optional<int> attempts_to_level;   ///< those that counted until the task was passed for the first time
   std::optional<std::int64_t> passed_ms;  ///< beginning of the attempt that passed it last
   int repetitions = 0;                    ///< that have succeeded since then
@@ -76,6 +77,7 @@ struct Recommendation {
   bool guide = true;
   std::optional<int> seed;
   Reason why;
+  int left = 0;  ///< attempts of a warm-up that are still to be made
 };
 
 struct Progress {

@@ -26,7 +26,7 @@ CurriculumResult load_curriculum_text(std::string_view text, const std::filesyst
   Diagnostics found;
   try {
     auto tree = expand_scene(text, virtual_path, found);
-    CurriculumReader reader(tree, found);
+    CurriculumReader reader(tree, sources.shipped_folder(), found);
     if (const auto root = tree.root ? reader.read() : nullptr) {
       result.curriculum = CurriculumChecker(reader, sources, tree.suggestions, found).check(*root);
       result.curriculum->content_hash = tree.hash.value();

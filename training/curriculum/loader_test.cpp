@@ -19,7 +19,7 @@ class OneScene final : public CurriculumSources {
   OneScene() {
     facts_.title = "Clipping";
     facts_.has_exercise = facts_.has_complications = true;
-    facts_.faults = {"torn", "order"};
+    facts_.faults = {{"torn", "A vein was torn"}, {"order", "The order"}};
     const auto add = [&](const char* id, Of of, Better better, auto quantity, const char* unit, double scale) {
       using Q = decltype(quantity);
       facts_.metrics.push_back(
@@ -30,7 +30,10 @@ class OneScene final : public CurriculumSources {
     add("economy", Of::both_hands, Better::high, Scalar{}, "%", 100);
     add("balance", Of::both_hands, Better::none, Scalar{}, "", 1);
   }
-  const SceneFacts& scene(const std::filesystem::path&) override { return facts_; }
+  const SceneFacts& scene(const std::filesystem::path& file) override {
+    seen_ = file;
+    return facts_;
+  }
   std::optional<BandFact> band(const std::filesystem::path& bands, const std::string& group, const SceneFacts&,
                                const MetricFact&, const std::string&, std::string& error) override {
     asked_ = bands.filename().string();
@@ -38,7 +41,9 @@ class OneScene final : public CurriculumSources {
     error = "no such group";
     return std::nullopt;
   }
+  std::filesystem::path shipped_folder() const override { return shipped_; }
   std::string asked_;
+  std::filesystem::path shipped_, seen_;
 
  private:
   SceneFacts facts_;
@@ -67,6 +72,28 @@ class LoadCurriculum : public testing::Test {
   test_files::TempFolder folder_;
   OneScene sources_;
 };
+
+TEST_F(LoadCurriculum, ElsewhereItMayNameFilesAsIfItLayAmongTheShippedOnes) {
+  test_files::TempFolder data;
+  data.write("curricula/own.xml", "");
+  const auto load_there = [&](const std::string& scene) {
+    const std::string text = R"(<curriculum title="C"><module id="m" title="M"><task id="t" title="T" scene=")" +
+                             scene + R"("><gate_goals/></task></module></curriculum>)";
+    return load_curriculum_text(text, data.path() / "curricula" / "c.xml", sources_).diagnostics.format();
+  };
+  EXPECT_NE(load_there("../scenes/clip.xml").find("leaves the scene's root folder"), std::string::npos);
+  sources_.shipped_ = folder_.path() / "curricula";
+  EXPECT_EQ(load_there("../scenes/clip.xml"), "");
+  EXPECT_EQ(sources_.seen_, std::filesystem::canonical(folder_.path() / "scenes/clip.xml"));
+  // What lies beside it comes first.
+  folder_.write("curricula/own.xml", "");
+  EXPECT_EQ(load_there("own.xml"), "");
+  EXPECT_EQ(sources_.seen_, std::filesystem::canonical(data.path() / "curricula/own.xml"));
+  // Neither may leave its folder, and the nearest name is of the place that was meant.
+  EXPECT_NE(load_there("../../x.xml").find("leaves the scene's root folder"), std::string::npos);
+  EXPECT_NE(load_there("../scenes/clp.xml").find("did you mean \"../scenes/clip.xml\"?"), std::string::npos);
+  EXPECT_NE(load_there("owm.xml").find("did you mean \"own.xml\"?"), std::string::npos);
+}
 
 TEST_F(LoadCurriculum, EverythingBecomesData) {
   const auto result = load(R"(<curriculum title="Year" text="For residents">
@@ -98,7 +125,7 @@ TEST_F(LoadCurriculum, EverythingBecomesData) {
   EXPECT_EQ(t.gates[0].in_a_row, 3);
   EXPECT_EQ(t.gates[0].within_ms, 14 * 86'400'000ll);
   EXPECT_EQ(t.gates[1].faults, (std::vector<std::string>{"torn", "order"}));
-  EXPECT_EQ(t.gates[1].text, "At most 1 faults of torn, order");
+  EXPECT_EQ(t.gates[1].text, "At most 1 faults of these: A vein was torn, The order");
   ASSERT_TRUE(t.repetition);
   EXPECT_EQ(t.repetition->after_ms, (std::vector<std::int64_t>{86'400'000, 3 * 86'400'000ll, 7 * 86'400'000ll}));
   EXPECT_EQ(t.repetition->grace_ms, 36 * 3'600'000ll);

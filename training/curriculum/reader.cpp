@@ -156,9 +156,17 @@ std::string CurriculumReader::missing(const RefParamBase& reference, const std::
 }
 
 void CurriculumReader::find_file(CurriculumElement& element, Param<File>& file) {
-  std::string error;
-  const auto path =
-      resolve_file(element.part->path.parent_path(), tree_.root_folder, file().string(), error, tree_.suggestions);
+  const std::filesystem::path own = element.part->path.parent_path();
+  const std::string name = file().string();
+  std::string error, shipped_error;
+  auto path = resolve_file(own, tree_.root_folder, name, error, tree_.suggestions);
+  if (path.empty() && !shipped_.empty()) {
+    path =
+        resolve_file(shipped_, scene_root_folder(shipped_ / "curriculum.xml"), name, shipped_error, tree_.suggestions);
+    // The better message is that of the place which the author meant.
+    const auto inside = (own / name).lexically_normal().lexically_relative(tree_.root_folder);
+    if (inside.empty() || *inside.begin() == "..") error = shipped_error;
+  }
   if (path.empty()) report(element, file.pos(), file.name() + ": " + error);
   file.set(path);
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "core/scene/expand.h"
 #include "training/curriculum/elements.h"
@@ -13,7 +14,9 @@ namespace insula {
 
 class CurriculumReader {
  public:
-  CurriculumReader(ExpandedScene& tree, Diagnostics& diagnostics) : tree_(tree), diagnostics_(diagnostics) {}
+  /// shipped: CurriculumSources::shipped_folder().
+  CurriculumReader(ExpandedScene& tree, std::filesystem::path shipped, Diagnostics& diagnostics)
+      : tree_(tree), shipped_(std::move(shipped)), diagnostics_(diagnostics) {}
 
   /// Null if the root is no curriculum. Everything that is wrong is reported.
   std::unique_ptr<CurriculumRoot> read();
@@ -33,6 +36,7 @@ class CurriculumReader {
   std::string missing(const RefParamBase& reference, const std::string& id);
 
   ExpandedScene& tree_;
+  std::filesystem::path shipped_;
   Diagnostics& diagnostics_;
   std::map<std::string, CurriculumElement*, std::less<>> by_id_;
   std::set<std::string, std::less<>> lost_ids_;  ///< of elements that could not be read

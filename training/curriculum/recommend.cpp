@@ -79,7 +79,8 @@ Recommendation recommend(const Curriculum& curriculum, const Course& course, con
             TaskMode::practice,
             task ? task->guide : true,
             {},
-            {"warm_up", fmt::format("Warm up before the first work of the day: {} of {} left", left, warm_up->times)}};
+            {"warm_up", fmt::format("Warm up before the first work of the day: {} of {} left", left, warm_up->times)},
+            left};
   }
   return next;
 }

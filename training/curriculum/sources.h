@@ -14,6 +14,11 @@
 
 namespace insula {
 
+struct FaultFact {
+  std::string id;
+  std::string text;  ///< what it is, for the trainee
+};
+
 /// One metric of an exercise.
 struct MetricFact {
   std::string id;
@@ -30,9 +35,10 @@ struct SceneFacts {
   Diagnostics diagnostics;  ///< of the scene; the rest is known only without errors
   std::string title;        ///< of the scene
   bool has_exercise = false;
-  bool has_complications = false;          ///< that a seed draws
-  std::vector<std::string> goals, faults;  ///< ids
-  std::vector<MetricFact> metrics;         ///< in the order of the exercise
+  bool has_complications = false;   ///< that a seed draws
+  std::vector<std::string> goals;   ///< ids
+  std::vector<FaultFact> faults;    ///< in the order of the exercise
+  std::vector<MetricFact> metrics;  ///< in the order of the exercise
 };
 
 /// Figures of a group for one metric, in the metric's unit.
@@ -44,6 +50,9 @@ struct BandFact {
 class CurriculumSources {
  public:
   virtual ~CurriculumSources() = default;
+  /// Where the shipped curricula are. A curriculum elsewhere, as in the user's data, may name files as if it lay here.
+  /// Empty: there is no such folder.
+  virtual std::filesystem::path shipped_folder() const { return {}; }
   /// The same file gives the same facts, which stay where they are.
   virtual const SceneFacts& scene(const std::filesystem::path& file) = 0;
   /// The bands of an exercise of that scene. Returns nothing, with the reason in `error`, if the file has no such group

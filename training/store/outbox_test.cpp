@@ -82,7 +82,8 @@ TEST_F(TrainingOutbox, ComesToAnOlderStoreWithoutWhatHappenedBefore) {
   {
     Database database(file());
     database.run(
-        "DROP TABLE outbox; DROP TABLE settings; DROP INDEX runs_by_time; ALTER TABLE runs DROP COLUMN version; "
+        "DROP TABLE followed_curricula; DROP TABLE outbox; DROP TABLE settings; DROP INDEX runs_by_time; ALTER TABLE "
+        "runs DROP COLUMN version; "
         "PRAGMA user_version=1;");
   }
   Store store(file());

@@ -42,6 +42,10 @@ constexpr const char* migrations[] = {
        CREATE INDEX outbox_in_order ON outbox (state, began_ms, run);
        CREATE TABLE settings (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
        INSERT INTO settings VALUES ('home_page', 'https://' || lower(hex(randomblob(8))) || '.insula.invalid');)",
+    // The curriculum that a person follows.
+    R"(CREATE TABLE followed_curricula (
+         person INTEGER PRIMARY KEY REFERENCES persons ON DELETE CASCADE, curriculum TEXT NOT NULL,
+         chosen_ms INTEGER NOT NULL);)",
 };
 
 int version_of(const Database& database) {

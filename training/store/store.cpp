@@ -90,6 +90,23 @@ bool Store::forget(const std::string& pseudonym) {
   return gone;
 }
 
+void Store::follow(const std::string& pseudonym, const std::string& curriculum) {
+  const auto person = find(pseudonym);
+  if (!person) throw InputError(fmt::format("nobody has the pseudonym {}", in_quotes(pseudonym)));
+  if (curriculum.empty())
+    return database_.prepare("DELETE FROM followed_curricula WHERE person = ?1").bind(person->id).run();
+  database_.prepare("INSERT OR REPLACE INTO followed_curricula (person, curriculum, chosen_ms) VALUES (?1, ?2, ?3)")
+      .bind(person->id, curriculum, now_ms())
+      .run();
+}
+
+std::string Store::followed(const std::string& pseudonym) const {
+  Statement s = database_.prepare(
+      "SELECT curriculum FROM followed_curricula WHERE person = (SELECT id FROM persons WHERE pseudonym = ?1)");
+  s.bind(pseudonym);
+  return s.step() ? s.text(0) : std::string();
+}
+
 std::optional<std::int64_t> Store::number_of(const std::string& pseudonym) const {
   const auto known = pseudonym.empty() ? std::nullopt : find(pseudonym);
   if (known) return known->id;

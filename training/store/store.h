@@ -24,6 +24,12 @@ class Store {
   /// Removes a person and all of his runs, and overwrites what they were. False: nobody has this pseudonym.
   bool forget(const std::string& pseudonym);
 
+  /// Lets a person follow the curriculum of that name; an empty one ends it. Throws InputError if nobody has the
+  /// pseudonym.
+  void follow(const std::string& pseudonym, const std::string& curriculum);
+  /// Name of the curriculum that the person follows; empty: none.
+  std::string followed(const std::string& pseudonym) const;
+
   /// Keeps a run. A person who is not known yet is added. False: a run with this uuid is there already.
   bool add(const Run& run);
   /// Keeps several runs at once, all of them or, after a failure, none. Returns how many were new.

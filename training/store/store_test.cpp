@@ -212,6 +212,38 @@ TEST_F(TrainingStore, ABackupIsWholeWhileTheStoreIsInUse) {
   EXPECT_EQ(store.runs("P07").size(), 2u);
 }
 
+TEST_F(TrainingStore, KnowsTheCurriculumThatAPersonFollows) {
+  Store store(file());
+  Person person;
+  person.pseudonym = "P07";
+  store.add(person);
+  EXPECT_EQ(store.followed("P07"), "");
+  store.follow("P07", "first_day");
+  store.follow("p07", "residency_year");
+  EXPECT_EQ(store.followed("P07"), "residency_year");
+  store.follow("P07", "");
+  EXPECT_EQ(store.followed("P07"), "");
+  EXPECT_THROW(store.follow("P08", "first_day"), InputError);
+  store.follow("P07", "first_day");
+  store.forget("P07");
+  store.add(person);
+  EXPECT_EQ(store.followed("P07"), "") << "it was forgotten with the person";
+}
+
+TEST_F(TrainingStore, AFileOfTheFirstSchemaBecomesAPresentOne) {
+  {
+    Store store(file());
+    store.add(run("P07", "a.xml", 1));
+    Database database(file());
+    database.run("DROP TABLE followed_curricula; PRAGMA user_version=2");
+  }
+  Store store(file());
+  EXPECT_EQ(store.runs("P07").size(), 1u);
+  store.follow("P07", "first_day");
+  EXPECT_EQ(store.followed("P07"), "first_day");
+  EXPECT_TRUE(fs::exists(file().string() + ".before_" + std::to_string(schema_version())));
+}
+
 TEST_F(TrainingStore, RefusesAFileOfANewerVersionAndWhatIsNoDatabase) {
   { Store store(file()); }
   {

@@ -26,8 +26,7 @@ struct Gateway::Impl {
         hosts(options.hosts),
         page{options.page, options.start},
         sessions(options.sessions, options.session_files),
-        training(
-            options.training, options.choose ? options.choose : [](const std::string&) {}),
+        training(options.training, options.asks),
         logins(options.secrets),
         audit(options.audit),
         login_api(logins, audit),

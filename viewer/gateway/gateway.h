@@ -26,7 +26,7 @@ struct Options {
   std::filesystem::path page;                        ///< folder with index.html; empty: a note instead of the page
   bool start = false;                                ///< "/" is the start page, else that of the exercise
   TrainingApi::Files training;                       ///< what the start page shows
-  std::function<void(const std::string&)> choose;    ///< gets a chosen exercise (TrainingApi)
+  TrainingApi::Asks asks;                            ///< of whoever started this program
   std::filesystem::path sessions;                    ///< folder of recorded sessions to offer; empty: none
   std::vector<std::filesystem::path> session_files;  ///< further ones
   Secrets secrets;                                   ///< admit pages of other machines to more than observing

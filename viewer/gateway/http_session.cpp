@@ -172,7 +172,7 @@ void HttpSession::answer_training(const Request& request, const std::vector<std:
   const std::string_view query = mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
   if (request.method() == http::verb::post) {
     if (!same_site(request)) return refuse(http::status::forbidden, "foreign origin");
-    const TrainingApi::Answer answer = site_.training.post(parts[1], request.body());
+    const ApiAnswer answer = site_.training.post(parts[1], request.body());
     site_.audit.write({visitor_.address, "here", 0, parts[1] + " " + request.body(), answer.status < 300,
                        answer.status < 300 ? "" : answer.json});
     return send_text(request, http::status(answer.status), "application/json", answer.json);
@@ -181,7 +181,7 @@ void HttpSession::answer_training(const Request& request, const std::vector<std:
     const fs::path file = site_.training.picture(query_value(query, "scene"));
     return file.empty() ? refuse(http::status::not_found, "no picture") : send_file(request, file, "no-cache");
   }
-  const TrainingApi::Answer answer = site_.training.get(parts[1], query);
+  const ApiAnswer answer = site_.training.get(parts[1], query);
   send_text(request, http::status(answer.status), "application/json", answer.json);
 }
 

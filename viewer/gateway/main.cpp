@@ -101,12 +101,17 @@ int main(int argc, char** argv) {
   app.add_option("--store", options.training.store, "training store: persons and their runs");
   app.add_option("--catalogue", options.training.catalogue, "JSON of the exercises that pages may choose from");
   app.add_option("--choice", options.training.choice, "JSON of the running exercise");
+  app.add_option("--curricula", options.training.curricula, "JSON of the curricula that persons may follow");
   app.add_flag("--start", options.start, "begin with the start page");
   add_access_options(app, options, places);
   CLI11_PARSE(app, argc, argv);
   // The program that started this one reads it.
-  options.choose = [](const std::string& json) {
+  options.asks.choose = [](const std::string& json) {
     fmt::print("choose {}\n", json);
+    std::fflush(stdout);
+  };
+  options.asks.curricula = [] {
+    fmt::print("curricula\n");
     std::fflush(stdout);
   };
   if (exact) options.more_ports = 0;

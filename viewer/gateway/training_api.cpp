@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "core/base/input_error.h"
 #include "core/base/text.h"
+#include "viewer/gateway/json_input.h"
+#include "viewer/gateway/learning_json.h"
+#include "viewer/gateway/run_json.h"
 #include "viewer/gateway/static_files.h"
 
 namespace insula::gateway {
@@ -18,74 +19,9 @@ namespace {
 using Json = nlohmann::json;
 using Ordered = nlohmann::ordered_json;
 using training::Person;
-using training::Run;
-
-template <class J>
-std::string dump(const J& json) {
-  return json.dump(-1, ' ', false, J::error_handler_t::replace) + "\n";
-}
-
-TrainingApi::Answer error(int status, const std::string& text) { return {status, dump(Json{{"error", text}})}; }
-
-Json read_json(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return Json::parse(std::string(std::istreambuf_iterator<char>(in), {}), nullptr, false);
-}
 
 Ordered person_json(const Person& p) {
   return {{"pseudonym", p.pseudonym}, {"role", p.role}, {"handedness", p.handedness}, {"year", p.year}};
-}
-
-/// Recordings are named to pages without their folder (sessions.h).
-Ordered run_json(const Run& r) {
-  return {{"uuid", r.uuid},
-          {"person", r.person},
-          {"scene", r.scene},
-          {"title", r.title},
-          {"mode", r.mode},
-          {"began_ms", r.began_ms},
-          {"duration_s", r.duration_s},
-          {"state", r.state},
-          {"goals", r.goals},
-          {"goals_done", r.goals_done},
-          {"faults", r.faults},
-          {"step_rate_hz", r.step_rate_hz},
-          {"recording", fs::path(r.recording).stem().string()}};
-}
-
-Ordered full_run_json(const Run& r) {
-  Ordered out = run_json(r);
-  out["metrics"] = Ordered::array();
-  for (const auto& m : r.metrics)
-    out["metrics"].push_back({{"id", m.id},
-                              {"hand", m.hand},
-                              {"value", m.value},
-                              {"text", m.text},
-                              {"unit", m.unit},
-                              {"better", m.better},
-                              {"digits", m.digits}});
-  out["fault_counts"] = Ordered::array();
-  for (const auto& f : r.fault_counts)
-    out["fault_counts"].push_back({{"id", f.id}, {"text", f.text}, {"count", f.count}});
-  return out;
-}
-
-Ordered curves_json(const std::vector<training::LearningCurve>& curves) {
-  Ordered out = Ordered::array();
-  for (const auto& c : curves) {
-    Ordered points = Ordered::array();
-    for (const auto& p : c.points)
-      points.push_back(
-          {{"uuid", p.uuid}, {"began_ms", p.began_ms}, {"mode", p.mode}, {"done", p.done}, {"value", p.value}});
-    out.push_back({{"metric", c.metric.id},
-                   {"hand", c.metric.hand},
-                   {"text", c.metric.text},
-                   {"unit", c.metric.unit},
-                   {"better", c.metric.better},
-                   {"digits", c.metric.digits},
-                   {"points", std::move(points)}});
-  }
-  return out;
 }
 
 template <class T>
@@ -106,9 +42,25 @@ Ordered history_json(const std::vector<training::ExerciseHistory>& history) {
   return out;
 }
 
-std::string text_of(const Json& body, const char* name) {
-  const auto found = body.find(name);
-  return found != body.end() && found->is_string() ? found->get<std::string>() : std::string();
+/// Copies the terms of an attempt, if there are any. Returns what is wrong with them.
+std::string add_terms(const Json& body, Json& choice) {
+  constexpr std::int64_t largest_seed = 2147483647;  // as in curricula
+  constexpr std::size_t longest_name = 64;
+  if (const auto mode = body.find("mode"); mode != body.end()) {
+    if (*mode != "practice" && *mode != "test") return "the mode is neither practice nor test";
+    choice["mode"] = *mode;
+  }
+  if (const auto seed = body.find("seed"); seed != body.end() && !seed->is_null()) {
+    if (!seed->is_number_unsigned() || *seed == 0 || *seed > largest_seed)
+      return fmt::format("the seed is no whole number from 1 to {}", largest_seed);
+    choice["seed"] = *seed;
+  }
+  if (const auto request = body.find("request"); request != body.end()) {
+    if (!request->is_string() || request->get_ref<const std::string&>().size() > longest_name)
+      return "the name of the request is no short text";
+    choice["request"] = *request;
+  }
+  return {};
 }
 
 }  // namespace
@@ -124,8 +76,11 @@ std::string query_value(std::string_view query, std::string_view name) {
   return {};
 }
 
-TrainingApi::TrainingApi(Files files, std::function<void(const std::string&)> choose)
-    : files_(std::move(files)), choose_(std::move(choose)) {
+TrainingApi::TrainingApi(Files files, Asks asks)
+    : files_(std::move(files)),
+      choose_(asks.choose ? std::move(asks.choose) : [](const std::string&) {}),
+      curricula_(
+          files_.curricula, asks.curricula ? std::move(asks.curricula) : [] {}) {
   if (files_.catalogue.empty()) return;
   for (const Json& e : read_json(files_.catalogue))
     if (e.is_object() && e.contains("scene") && e["scene"].is_string() && e.contains("picture") &&
@@ -139,72 +94,97 @@ training::Store& TrainingApi::store() {
   return *store_;
 }
 
-TrainingApi::Answer TrainingApi::get(std::string_view path, std::string_view query) {
+ApiAnswer TrainingApi::get(std::string_view path, std::string_view query) {
   const auto value = [&](std::string_view name) { return query_value(query, name); };
   try {
     if (path == "exercises") {
       Json list = exercises_;
       for (Json& e : list) e["picture"] = !e["picture"].get<std::string>().empty();  // pages need no path
-      return {200, dump(list)};
+      return answer_with(list);
     }
     if (path == "state") {
       const Json state = files_.choice.empty() ? Json() : read_json(files_.choice);
-      return {200, dump(state.is_object() ? state : Json::object())};
+      return answer_with(state.is_object() ? state : Json::object());
     }
+    if (path == "curricula") return curricula_.list();
+    if (path == "curriculum") return curricula_.progress(store(), value("person"));
+    if (path == "certificate") return curricula_.certificate(store(), value("person"), value("curriculum"));
     const bool listed = path == "people" || path == "history" || path == "runs";
     if (listed && files_.store.empty()) return {200, "[]\n"};
-    if (path == "people") return {200, dump(list_of(store().persons(), person_json))};
-    if (path == "history") return {200, dump(history_json(store().history(value("person"))))};
-    if (path == "runs") return {200, dump(list_of(store().runs(value("person")), run_json))};
+    if (path == "people") return answer_with(list_of(store().persons(), person_json));
+    if (path == "history") return answer_with(history_json(store().history(value("person"))));
+    if (path == "runs") return answer_with(list_of(store().runs(value("person")), run_json));
     if (path == "run") {
       const auto run = store().run(value("uuid"));
-      return run ? Answer{200, dump(full_run_json(*run))} : error(404, "there is no such run");
+      return run ? answer_with(full_run_json(*run)) : refusal(404, "there is no such run");
     }
-    if (path == "curves") return {200, dump(curves_json(store().curves(value("person"), value("scene"))))};
+    if (path == "curves") return curves(value("person"), value("scene"));
   } catch (const InputError& e) {
-    return error(503, e.what());
+    return refusal(503, e.what());
   }
-  return error(404, "not found");
+  return refusal(404, "not found");
 }
 
-TrainingApi::Answer TrainingApi::post(std::string_view path, const std::string& text) {
+ApiAnswer TrainingApi::curves(const std::string& person, const std::string& scene) {
+  Ordered out = Ordered::array();
+  const std::string followed = person.empty() ? std::string() : store().followed(person);
+  for (const training::LearningCurve& c : store().curves(person, scene)) {
+    const Gate* gate = curricula_.metric_gate(scene, c.metric.id, c.metric.hand, followed);
+    out.push_back(
+        curve_json(c, gate ? std::optional(level_of(*gate)) : level_of_specialists(store(), scene, c.metric)));
+  }
+  return answer_with(out);
+}
+
+ApiAnswer TrainingApi::post(std::string_view path, const std::string& text) {
   const Json body = Json::parse(text, nullptr, false);
-  if (!body.is_object()) return error(400, "this is no JSON object");
+  if (!body.is_object()) return refusal(400, "this is no JSON object");
   if (path == "people") return add_person(body);
   if (path == "choose") return choose_exercise(body);
-  return error(404, "not found");
+  if (path == "curriculum") return follow_curriculum(body);
+  return refusal(404, "not found");
 }
 
-TrainingApi::Answer TrainingApi::add_person(const Json& body) {
+ApiAnswer TrainingApi::add_person(const Json& body) {
   Person p;
   p.pseudonym = text_of(body, "pseudonym");
   if (body.contains("role")) p.role = text_of(body, "role");
   if (body.contains("handedness")) p.handedness = text_of(body, "handedness");
   if (const auto year = body.find("year"); year != body.end()) {
-    if (!year->is_number_integer()) return error(400, "the year of training is no whole number");
+    if (!year->is_number_integer()) return refusal(400, "the year of training is no whole number");
     p.year = int(std::clamp<std::int64_t>(year->get<std::int64_t>(), -1, 1000));
   }
-  if (files_.store.empty()) return error(503, "this session keeps nothing, so nobody can be added");
+  if (files_.store.empty()) return refusal(503, "this session keeps nothing, so nobody can be added");
   try {
-    return {200, dump(person_json(store().add(p)))};
+    return answer_with(person_json(store().add(p)));
   } catch (const InputError& e) {
-    return error(400, e.what());
+    return refusal(400, e.what());
   }
 }
 
-TrainingApi::Answer TrainingApi::choose_exercise(const Json& body) {
+ApiAnswer TrainingApi::choose_exercise(const Json& body) {
   const std::string scene = text_of(body, "scene"), person = text_of(body, "person");
-  bool known = false;
+  bool known = curricula_.has_scene(scene);
   for (const Json& e : exercises_) known = known || e["scene"] == scene;
-  if (!known) return error(404, fmt::format("there is no exercise {}", in_quotes(scene)));
+  if (!known) return refusal(404, fmt::format("there is no exercise {}", in_quotes(scene)));
+  Json choice{{"scene", scene}, {"person", person}};
+  if (const std::string why = add_terms(body, choice); !why.empty()) return refusal(400, why);
   try {
     if (!person.empty() && !store().find(person))
-      return error(404, fmt::format("nobody has the pseudonym {}", in_quotes(person)));
+      return refusal(404, fmt::format("nobody has the pseudonym {}", in_quotes(person)));
   } catch (const InputError& e) {
-    return error(503, e.what());
+    return refusal(503, e.what());
   }
-  choose_(Json{{"scene", scene}, {"person", person}}.dump());
+  choose_(choice.dump());
   return {202, "{}\n"};
+}
+
+ApiAnswer TrainingApi::follow_curriculum(const Json& body) {
+  try {
+    return curricula_.follow(store(), body);
+  } catch (const InputError& e) {
+    return refusal(503, e.what());
+  }
 }
 
 fs::path TrainingApi::picture(const std::string& scene) const {

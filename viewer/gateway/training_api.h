@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "training/store/store.h"
+#include "viewer/gateway/api_answer.h"
+#include "viewer/gateway/curriculum_api.h"
 
 namespace insula::gateway {
 
@@ -21,14 +23,16 @@ class TrainingApi {
     std::filesystem::path
         catalogue;                 ///< read once; exercises that may be chosen (engine/live/catalogue.h); empty: none
     std::filesystem::path choice;  ///< the running exercise (engine/live/exercise_choice.h)
+    std::filesystem::path curricula =
+        {};  ///< what may be followed (engine/authoring/curriculum_list.h); empty: nothing
   };
-  /// choose: gets {"scene", "person"} of a choice that is allowed.
-  TrainingApi(Files files, std::function<void(const std::string& json)> choose);
+  /// What is asked of the program that started this one; an empty function: nothing is asked.
+  struct Asks {
+    std::function<void(const std::string& json)> choose = {};  ///< gets a choice that is allowed
+    std::function<void()> curricula = {};                      ///< the file of curricula is wanted
+  };
+  TrainingApi(Files files, Asks asks);
 
-  struct Answer {
-    int status = 200;  ///< of HTTP
-    std::string json;  ///< an error is {"error": text}
-  };
   /// path: what follows /api/. query: what follows the question mark.
   ///   exercises                     [{scene, group, title, text, picture: whether there is one}]
   ///   state                         {scene, person, state, text}
@@ -36,22 +40,27 @@ class TrainingApi {
   ///   history?person=               [{scene, title, runs, last, best}], guests' without a person
   ///   runs?person=                  the newest 200
   ///   run?uuid=                     one with metrics and faults
-  ///   curves?person=&scene=         [{metric, hand, text, unit, better, digits, points}]
-  Answer get(std::string_view path, std::string_view query);
-  ///   people {pseudonym, role, handedness, year}; choose {scene, person}
-  Answer post(std::string_view path, const std::string& body);
+  ///   curricula, curriculum?person=, certificate?person=&curriculum= (curriculum_api.h)
+  ///   curves?person=&scene=         [...], learning_json.h
+  ApiAnswer get(std::string_view path, std::string_view query);
+  ///   people {pseudonym, role, handedness, year}; choose {scene, person, mode, seed, request}, the last three if they
+  ///   are wanted; curriculum {person, curriculum}
+  ApiAnswer post(std::string_view path, const std::string& body);
   /// Picture of an exercise of the catalogue; empty: there is none.
   std::filesystem::path picture(const std::string& scene) const;
 
  private:
   training::Store& store();
-  Answer add_person(const nlohmann::json& body);
-  Answer choose_exercise(const nlohmann::json& body);
+  ApiAnswer curves(const std::string& person, const std::string& scene);
+  ApiAnswer add_person(const nlohmann::json& body);
+  ApiAnswer choose_exercise(const nlohmann::json& body);
+  ApiAnswer follow_curriculum(const nlohmann::json& body);
 
   Files files_;
   std::vector<nlohmann::json> exercises_;  ///< each with a scene and the file of its picture
   std::function<void(const std::string&)> choose_;
   std::unique_ptr<training::Store> store_;  ///< opened when it is first needed
+  CurriculumApi curricula_;
 };
 
 /// The decoded value of a name in a query ("a=1&b=2"); empty if it is not there.

@@ -22,7 +22,7 @@ class TrainingApiTest : public testing::Test {
 
   TrainingApi api(const fs::path& store) {
     return {{store, folder_.path() / "catalogue.json", folder_.path() / "choice.json"},
-            [this](const std::string& j) { chosen_.push_back(json::parse(j)); }};
+            {[this](const std::string& j) { chosen_.push_back(json::parse(j)); }, {}}};
   }
 
   test_files::TempFolder folder_;
@@ -88,6 +88,19 @@ TEST_F(TrainingApiTest, PassesOnChoicesOfWhatThereIsOnly) {
   EXPECT_EQ(a.post("choose", R"({"scene":["2.xml"]})").status, 404);
   ASSERT_EQ(chosen_.size(), 2u);
   EXPECT_EQ(chosen_[0], (json{{"scene", "2.xml"}, {"person", "P07"}}));
+}
+
+TEST_F(TrainingApiTest, ChecksTheTermsOfAnAttempt) {
+  auto a = api({});
+  EXPECT_EQ(a.post("choose", R"({"scene":"2.xml","person":"","mode":"test","seed":7,"request":"r"})").status, 202);
+  EXPECT_EQ(chosen_.back(),
+            (json{{"scene", "2.xml"}, {"person", ""}, {"mode", "test"}, {"seed", 7}, {"request", "r"}}));
+  for (const char* bad : {R"("mode":"demonstration")", R"("mode":7)", R"("seed":0)", R"("seed":-3)", R"("seed":1.5)",
+                          R"("seed":2147483648)", R"("seed":"7")", R"("request":7)"})
+    EXPECT_EQ(a.post("choose", std::string(R"({"scene":"2.xml","person":"",)") + bad + "}").status, 400) << bad;
+  const std::string long_name(65, 'r');
+  EXPECT_EQ(a.post("choose", R"({"scene":"2.xml","person":"","request":")" + long_name + "\"}").status, 400);
+  EXPECT_EQ(chosen_.size(), 1u);
 }
 
 TEST_F(TrainingApiTest, WithoutAStoreThereAreGuestsOnly) {

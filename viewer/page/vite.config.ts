@@ -10,7 +10,9 @@ export default defineConfig({
     target: 'es2022',
     chunkSizeWarningLimit: 1500,
     reportCompressedSize: false,
-    rollupOptions: { input: ['index.html', 'replay.html', 'start.html', 'login.html', 'room.html'] },
+    rollupOptions: {
+      input: ['index.html', 'replay.html', 'start.html', 'login.html', 'room.html', 'certificate.html'],
+    },
   },
   server: {
     proxy: { '/ws': { target: gateway, ws: true }, '/bundle': gateway, '/sessions': gateway, '/api': gateway },

@@ -16,7 +16,7 @@ import { pageTexts } from './page_texts.mjs';
 const here = fileURLToPath(new URL('.', import.meta.url));
 const folder = join(here, '../src/languages/catalogues');
 const kept = join(here, 'exercise_texts.json');
-const scenes = join(here, '../../../scenes');
+const project = join(here, '../../..');
 const json = (value) => `${JSON.stringify(value, null, 2)}\n`;
 
 export const languages = readdirSync(folder).map((f) => f.replace('.json', ''));
@@ -62,18 +62,18 @@ export function stale(language) {
   return Object.keys(catalogue(language)).filter((key) => !keys.has(key));
 }
 
-/** Complete scenes in the folders that the start page offers. */
-function shippedScenes() {
-  return ['training', 'skills', 'cases'].flatMap((group) =>
-    readdirSync(join(scenes, group))
+/** Complete scenes in the folders that the start page offers, and the curricula. */
+function shippedFiles() {
+  return ['scenes/training', 'scenes/skills', 'scenes/cases', 'curricula'].flatMap((group) =>
+    readdirSync(join(project, group))
       .filter((f) => f.endsWith('.xml') && !f.startsWith('bench_'))
       .sort()
-      .map((f) => join(scenes, group, f)),
+      .map((f) => join(project, group, f)),
   );
 }
 
 function askedTexts(program) {
-  const out = execFileSync(program, ['texts', ...shippedScenes()], { encoding: 'utf8', maxBuffer: 1 << 24 });
+  const out = execFileSync(program, ['texts', ...shippedFiles()], { encoding: 'utf8', maxBuffer: 1 << 24 });
   const kinds = new Map();
   for (const { text, kind } of JSON.parse(out)) {
     const key = exerciseKey(text);

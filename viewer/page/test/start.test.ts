@@ -13,7 +13,7 @@ describe('answers of the gateway', () => {
   it('are checked before use', () => {
     expect(exercisesOf('nonsense')).toEqual([]);
     expect(exercisesOf([{ scene: 'a', picture: 'yes' }, null, 7, { title: 'no scene' }])).toEqual([
-      { scene: 'a', group: '', title: '', text: '', picture: false },
+      { scene: 'a', group: '', title: '', text: '', site: '', difficulty: 0, picture: false },
     ]);
     expect(peopleOf([{ pseudonym: 'P', year: 'x' }, {}])).toEqual([
       { pseudonym: 'P', role: '', handedness: '', year: 0 },
@@ -22,7 +22,7 @@ describe('answers of the gateway', () => {
     expect(run({ began_ms: Infinity }).beganMs).toBe(0);
     expect(historyOf([{ scene: 's', runs: 3, last: { uuid: 'u' }, best: null }]).get('s')!.best).toBeNull();
     expect(curvesOf([{ digits: 99, points: [{ value: null }] }])[0]!.digits).toBe(6);
-    expect(runningOf(undefined)).toEqual({ scene: '', person: '', state: '', text: '' });
+    expect(runningOf(undefined)).toEqual({ scene: '', person: '', state: '', text: '', request: '' });
   });
 });
 

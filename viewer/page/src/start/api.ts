@@ -8,6 +8,10 @@ export interface Exercise {
   group: string;
   title: string;
   text: string;
+  /** Of the aneurysm; '': not said. */
+  site: string;
+  /** 1 to 5; 0: not said. */
+  difficulty: number;
   picture: boolean;
 }
 
@@ -50,6 +54,20 @@ export interface Curve {
   better: string;
   digits: number;
   points: { uuid: string; beganMs: number; mode: string; done: boolean; value: number }[];
+  /** null: no level is known. */
+  learning: Learning | null;
+}
+
+/** A curve against the level that counts as learnt (viewer/gateway/learning_json.h). */
+export interface Learning {
+  atLeast: number | null;
+  atMost: number | null;
+  inARow: number;
+  /** 'curriculum' or 'specialists'. */
+  source: string;
+  attemptsToLevel: number | null;
+  /** accepted, alarmed: index of the attempt that crossed a line first. */
+  cusum: { sum: number[]; h0: number; h1: number; accepted: number | null; alarmed: number | null };
 }
 
 export interface Running {
@@ -58,6 +76,19 @@ export interface Running {
   /** 'running', 'loading', 'refused', or '' if nothing is known. */
   state: string;
   text: string;
+  /** Name of the request that it answers; '': of none. */
+  request: string;
+}
+
+/** What is to be begun. */
+export interface Choice {
+  scene: string;
+  person: string;
+  /** Name by which the answer is known. */
+  request: string;
+  /** How it counts for a curriculum; without them, the mode is chosen in the exercise. */
+  mode?: string;
+  seed?: number;
 }
 
 type Json = Record<string, unknown>;
@@ -67,6 +98,29 @@ export const list = (value: unknown): Json[] => (Array.isArray(value) ? value.ma
 export const text = (value: unknown): string => (typeof value === 'string' ? value : '');
 export const number = (value: unknown): number => (typeof value === 'number' && Number.isFinite(value) ? value : 0);
 
+export const numberOrNull = (value: unknown): number | null =>
+  typeof value === 'number' && Number.isFinite(value) ? value : null;
+
+function learningOf(curve: Json): Learning | null {
+  const [level, sums] = [object(curve.level), object(curve.cusum)];
+  const [atLeast, atMost] = [numberOrNull(level.at_least), numberOrNull(level.at_most)];
+  if (atLeast === null && atMost === null) return null;
+  return {
+    atLeast,
+    atMost,
+    inARow: Math.max(1, number(level.in_a_row)),
+    source: text(level.source),
+    attemptsToLevel: numberOrNull(curve.attempts_to_level),
+    cusum: {
+      sum: Array.isArray(sums.sum) ? sums.sum.map(number) : [],
+      h0: number(sums.h0),
+      h1: number(sums.h1),
+      accepted: numberOrNull(sums.accepted),
+      alarmed: numberOrNull(sums.alarmed),
+    },
+  };
+}
+
 export function exercisesOf(json: unknown): Exercise[] {
   return list(json)
     .map((e) => ({
@@ -74,6 +128,8 @@ export function exercisesOf(json: unknown): Exercise[] {
       group: text(e.group),
       title: said(text(e.title)),
       text: said(text(e.text)),
+      site: text(e.site),
+      difficulty: Math.min(5, Math.max(0, Math.round(number(e.difficulty)))),
       picture: e.picture === true,
     }))
     .filter((e) => e.scene !== '');
@@ -133,12 +189,19 @@ export function curvesOf(json: unknown): Curve[] {
       done: p.done === true,
       value: number(p.value),
     })),
+    learning: learningOf(c),
   }));
 }
 
 export function runningOf(json: unknown): Running {
   const s = object(json);
-  return { scene: text(s.scene), person: text(s.person), state: text(s.state), text: text(s.text) };
+  return {
+    scene: text(s.scene),
+    person: text(s.person),
+    state: text(s.state),
+    text: text(s.text),
+    request: text(s.request),
+  };
 }
 
 /** The gateway's answers. A refusal is thrown as an Error with its text. */
@@ -167,7 +230,6 @@ export class Api {
     curvesOf(await this.ask('curves', { person, scene }));
   running = async (): Promise<Running> => runningOf(await this.ask('state'));
   addPerson = async (person: Person): Promise<void> => void (await this.ask('people', {}, person));
-  choose = async (scene: string, person: string): Promise<void> =>
-    void (await this.ask('choose', {}, { scene, person }));
+  choose = async (choice: Choice): Promise<void> => void (await this.ask('choose', {}, choice));
   picture = (scene: string): string => new URL(`api/picture?scene=${encodeURIComponent(scene)}`, this.base).href;
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The exercises as cards, by group: picture, title, what is to be done, and how the last run went.
 import { el } from '../hud/dom';
-import type { Api, Exercise, History } from './api';
-import { groupTitles, resultText, stateOf, stateText } from './wording';
 import { said } from '../languages/said';
 import { text } from '../languages/text';
+import type { Api, Exercise, History } from './api';
+import { bySite, CaseFilter, difficultyText, siteText } from './case_filter';
+import { groupTitles, resultText, stateOf, stateText } from './wording';
 
 export interface CardActions {
   begin: (exercise: Exercise) => void;
@@ -14,13 +15,32 @@ export interface CardActions {
 export class Cards {
   readonly root = el('div', { class: 'groups' });
 
+  private readonly filter = new CaseFilter(() => this.again());
+  private again: () => void = () => undefined;
+
   constructor(
     private readonly api: Api,
     private readonly actions: CardActions,
   ) {}
 
+  private lists(group: string, of: readonly Exercise[], card: (e: Exercise) => HTMLElement): HTMLElement[] {
+    const cards = (some: readonly Exercise[]) => el('ul', { class: 'cards' }, ...some.map(card));
+    if (group !== 'cases') return [cards(of)];
+    const sites = bySite(this.filter.apply(of));
+    if (sites.length === 0) return [this.filter.root, el('p', { class: 'hint' }, text('No case is like that.'))];
+    return [
+      this.filter.root,
+      ...sites.map((s) => el('div', { class: 'site' }, el('h3', {}, siteText(s.site)), cards(s.cases))),
+    ];
+  }
+
   /** running: the scene that the engine has now. */
   show(exercises: readonly Exercise[], history: ReadonlyMap<string, History>, running: string): void {
+    this.again = () => this.show(exercises, history, running);
+    this.fill(exercises, history, running);
+  }
+
+  private fill(exercises: readonly Exercise[], history: ReadonlyMap<string, History>, running: string): void {
     const groups = [...new Set(exercises.map((e) => e.group))];
     this.root.replaceChildren(
       ...groups.map((group) =>
@@ -28,12 +48,10 @@ export class Cards {
           'section',
           { class: 'group' },
           el('h2', {}, groupTitles[group] ?? said(group)),
-          el(
-            'ul',
-            { class: 'cards' },
-            ...exercises
-              .filter((e) => e.group === group)
-              .map((e) => this.card(e, history.get(e.scene), e.scene === running)),
+          ...this.lists(
+            group,
+            exercises.filter((e) => e.group === group),
+            (e) => this.card(e, history.get(e.scene), e.scene === running),
           ),
         ),
       ),
@@ -77,6 +95,7 @@ export class Cards {
         { class: 'body' },
         el('h3', {}, e.title),
         el('p', { class: 'state', 'data-state': state }, stateText[state]),
+        ...(e.difficulty === 0 ? [] : [el('p', { class: 'state' }, difficultyText(e.difficulty))]),
         el('p', { class: 'text' }, e.text),
         ...results,
         el('div', { class: 'row' }, ...buttons),

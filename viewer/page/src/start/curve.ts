@@ -27,35 +27,47 @@ export function places(values: readonly number[]): { x: number; y: number }[] {
   }));
 }
 
-function add(root: SVGElement, tag: string, attributes: Record<string, string>): SVGElement {
+export function addSvg(root: SVGElement, tag: string, attributes: Record<string, string>): SVGElement {
   const e = document.createElementNS(svg, tag);
   for (const [k, v] of Object.entries(attributes)) e.setAttribute(k, v);
   root.append(e);
   return e;
 }
 
-export function curvePicture(curve: Curve, label: string): SVGSVGElement {
+/** An empty picture. */
+export function picture(label: string, kind: string): SVGSVGElement {
   const root = document.createElementNS(svg, 'svg');
   root.setAttribute('viewBox', `0 0 ${width} ${height}`);
   root.setAttribute('role', 'img');
   root.setAttribute('aria-label', label);
+  root.setAttribute('class', kind);
+  return root;
+}
+
+export function curvePicture(curve: Curve, label: string): SVGSVGElement {
+  const root = picture(label, 'learning');
   const values = curve.points.map((p) => p.value);
-  const at = places(values);
   const medians = movingMedian(values, 5);
+  const levels = [curve.learning?.atLeast, curve.learning?.atMost].filter((l) => typeof l === 'number');
+  // One scale for all: the height of a value does not depend on how many there are.
+  const y = places([...values, ...medians, ...levels]).map((p) => p.y);
+  const at = places(values).map(({ x }, i) => ({ x, y: y[i]! }));
+  for (const line of y.slice(2 * values.length))
+    addSvg(root, 'line', { class: 'level', x1: '0', x2: String(width), y1: line.toFixed(1), y2: line.toFixed(1) });
   if (at.length > 2) {
-    const scale = places([...values, ...medians]).slice(values.length);
-    const d = scale.map((p, i) => `${i === 0 ? 'M' : 'L'}${at[i]!.x.toFixed(1)} ${p.y.toFixed(1)}`).join('');
-    add(root, 'path', { class: 'median', d });
+    const scale = y.slice(values.length, 2 * values.length);
+    const d = scale.map((h, i) => `${i === 0 ? 'M' : 'L'}${at[i]!.x.toFixed(1)} ${h.toFixed(1)}`).join('');
+    addSvg(root, 'path', { class: 'median', d });
   }
   at.forEach((p, i) => {
     const point = curve.points[i]!;
-    const dot = add(root, 'circle', {
+    const dot = addSvg(root, 'circle', {
       cx: p.x.toFixed(1),
       cy: p.y.toFixed(1),
       r: '3',
       class: point.mode === 'test' ? 'test' : 'practice',
     });
-    const title = add(dot, 'title', {});
+    const title = addSvg(dot, 'title', {});
     const when = momentText(new Date(point.beganMs));
     title.textContent = `${when}: ${quantity(fixed(point.value, curve.digits), curve.unit)}`;
   });

@@ -5,6 +5,7 @@ import type { Api, Curve, Exercise } from './api';
 import { curvePicture } from './curve';
 import { fixed, quantity } from '../languages/numbers';
 import { text } from '../languages/text';
+import { learningBox } from './learning';
 
 function nameOf(c: Curve): string {
   if (c.hand === 'left') return text('{metric}, left hand', { metric: c.text });
@@ -54,6 +55,7 @@ function curveBox(c: Curve): HTMLElement {
         ? text('last {last}, best {best}, more is better', numbers)
         : text('last {last}, best {best}, less is better', numbers),
     ),
+    ...learningBox(c, name),
   );
 }
 
