@@ -200,7 +200,7 @@ void add_play(Options& c) {
   command->add_option("--mode", o.mode, "begin at once in this mode (default: chosen on the page)")
       ->check(CLI::IsMember({"demonstration", "practice", "test"}));
   insula::add_data(*command, o.data);
-  insula::add_record_store(*command, o.lrs, o.lrs_login, "--lrs-login");
+  insula::add_record_store(*command, o.records, "lrs-");
   command->add_option("--report", o.report,
                       "folder for reports of the session, each in a folder of its own named by date and time (default: "
                       "insula-reports in the home folder, or reports in the folder of --data)");

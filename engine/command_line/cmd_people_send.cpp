@@ -84,11 +84,11 @@ int cmd_people_send(const CommandContext& context, const PeopleOptions& o) {
     const training::Store store(file);
     const Outbox outbox(store);
     prepare(context, o, outbox);
-    if (o.lrs.empty()) {
+    if (o.records.lrs.empty()) {
       print_state(context.out, outbox);
       return 0;
     }
-    xapi::HttpRecordStore records(o.lrs, xapi::read_login(o.login));
+    xapi::HttpRecordStore records(o.records.lrs, xapi::read_login(o.records.login), o.records.authorities);
     const xapi::SenderLock lock(file);
     while (!lock.take()) {
       if (o.watch) {

@@ -140,10 +140,11 @@ std::vector<std::string> on_standby(std::vector<std::string> engine) {
 
 /// What persons do in this session can be sent; else it says why not.
 bool sender_ok(const CommandContext& context, const PlayOptions& options) {
-  if (options.lrs.empty()) return true;
+  const RecordStoreOptions& records = options.records;
+  if (records.lrs.empty()) return true;
   try {
     if (options.store.empty()) throw InputError("--lrs: a session without reports keeps no runs to be sent");
-    const xapi::HttpRecordStore checked(options.lrs, xapi::read_login(options.lrs_login));
+    const xapi::HttpRecordStore checked(records.lrs, xapi::read_login(records.login), records.authorities);
   } catch (const InputError& e) {
     context.err << "error: " << e.what() << '\n';
     return false;
@@ -233,7 +234,7 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
                     {serving, [&](std::string_view json) { choice.ask(json); }, [&] { curricula.begin(); }}));
   if (!options.view) supervisor.add(haptic_child(options, folder));
   supervisor.add(engine);
-  if (!options.lrs.empty()) supervisor.add(sender_child(options, program));
+  if (!options.records.lrs.empty()) supervisor.add(sender_child(options, program));
   return supervisor.run();
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/base/input_error.h"
 #include "core/params/option.h"
+#include "engine/command_line/record_store_options.h"
 #include "engine/live/step_rate.h"
 #include "engine/session/session_format.h"
 
@@ -57,14 +58,17 @@ inline void add_data(CLI::App& command, std::filesystem::path& folder) {
                      "platform's folder for it)");
 }
 
-/// login_name: of the option for the file with the password.
-inline void add_record_store(CLI::App& command, std::string& lrs, std::filesystem::path& login,
-                             const std::string& login_name) {
-  command.add_option("--lrs", lrs, "address of the learning record store that is told what persons do");
+/// prefix: of the names of the options beside --lrs.
+inline void add_record_store(CLI::App& command, RecordStoreOptions& o, const std::string& prefix) {
+  command.add_option("--lrs", o.lrs, "address of the learning record store that is told what persons do");
   command
-      .add_option(login_name, login,
+      .add_option("--" + prefix + "login", o.login,
                   "file with its NAME:PASSWORD, which nobody else may read (default: INSULA_LRS_USER and "
                   "INSULA_LRS_PASSWORD of the environment)")
+      ->needs("--lrs");
+  command
+      .add_option("--" + prefix + "ca", o.authorities,
+                  "PEM file of the certificates that it must descend from (default: those that this machine trusts)")
       ->needs("--lrs");
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/command_line/commands.h"
+#include "engine/command_line/record_store_options.h"
 #include "engine/command_line/run_command_line.h"
 #include "training/curriculum/evaluate.h"
 #include "training/store/store.h"
@@ -24,8 +25,7 @@ struct PeopleOptions {
   std::vector<std::filesystem::path> folders;  ///< forget: of recordings and reports; empty: those of play
   bool json = false;                           ///< list, progress, certificate, curricula
   std::filesystem::path xapi;                  ///< export: file for statements; empty: none
-  std::string lrs;                             ///< send: address of the learning record store; empty: nothing is sent
-  std::filesystem::path login;                 ///< send: file with NAME:PASSWORD; empty: of the environment
+  RecordStoreOptions records;                  ///< send
   std::string home_page;                       ///< send: of this installation; empty: as it is
   bool watch = false, queue_all = false;       ///< send
 };

@@ -56,7 +56,7 @@ void add_people_commands(CommandLine& line) {
       ->capture_default_str();
 
   auto* send = add("send", "send attempts to a learning record store, or say what waits", cmd_people_send);
-  add_record_store(*send, o->lrs, o->login, "--login");
+  add_record_store(*send, o->records, "");
   send->add_flag("--watch", o->watch, "go on until Ctrl-C, and send what is new")->needs("--lrs");
   send->add_flag("--all", o->queue_all, "queue also what was refused, and runs of before there was a queue");
   send->add_option("--home-page", o->home_page,

@@ -9,6 +9,7 @@
 #include "core/registry/registry.h"
 #include "engine/command_line/commands.h"
 #include "engine/command_line/play_room.h"
+#include "engine/command_line/record_store_options.h"
 
 namespace insula {
 
@@ -34,8 +35,7 @@ struct PlayOptions {
   std::filesystem::path bands;   ///< of `insula bands --json`, for the reports; empty: none
   std::string band_group;        ///< whose bands; empty: the only group
   std::vector<std::string> fields;                  ///< NAME=VALUE, of the recording
-  std::string lrs;                                  ///< learning record store to send attempts to; empty: none
-  std::filesystem::path lrs_login;                  ///< file with its NAME:PASSWORD; empty: of the environment
+  RecordStoreOptions records;                       ///< to send attempts to
   bool start_page = false;                          ///< the viewer begins with the start page
   bool reload = true;                               ///< loads the scene again when one of its files is saved
   bool view = false;                                ///< shows the scene: time stands still, no hands (insula view)

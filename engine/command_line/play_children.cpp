@@ -67,12 +67,15 @@ ChildSpec haptic_child(const PlayOptions& options, const fs::path& folder) {
 }
 
 ChildSpec sender_child(const PlayOptions& options, const fs::path& program) {
+  const RecordStoreOptions& records = options.records;
   ChildSpec sender;
   sender.name = "sender";
   sender.may_stay_away = true;
-  sender.command = {program.string(), "people", "send", "--watch", "--lrs", options.lrs};
-  if (!options.lrs_login.empty())
-    sender.command.insert(sender.command.end(), {"--login", fs::absolute(options.lrs_login).string()});
+  sender.command = {program.string(), "people", "send", "--watch", "--lrs", records.lrs};
+  if (!records.login.empty())
+    sender.command.insert(sender.command.end(), {"--login", fs::absolute(records.login).string()});
+  if (!records.authorities.empty())
+    sender.command.insert(sender.command.end(), {"--ca", fs::absolute(records.authorities).string()});
   if (!options.data.empty()) sender.command.insert(sender.command.end(), {"--data", options.data.string()});
   return sender;
 }

@@ -11,6 +11,7 @@ import base64
 import http.server
 import json
 import socket
+import ssl
 import threading
 import time
 import urllib.parse
@@ -78,7 +79,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
 
 
 class StandIn:
-    def __init__(self, login="", port=0):
+    def __init__(self, login="", port=0, certificate=None):
+        """certificate: PEM file with certificate and key; the stand-in then serves by TLS as localhost."""
         self.login, self.plan, self.requests, self.repeated = login, [], 0, 0
         self.kept = {}  # by id, in order of arrival
         self.lock = threading.Lock()
@@ -88,6 +90,11 @@ class StandIn:
         self.server.store = self
         self.port = self.server.server_address[1]
         self.url = f"http://127.0.0.1:{self.port}/xapi"
+        if certificate:
+            tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+            tls.load_cert_chain(certificate)
+            self.server.socket = tls.wrap_socket(self.server.socket, server_side=True)
+            self.url = f"https://localhost:{self.port}/xapi"
 
     def __enter__(self):
         threading.Thread(target=self.server.serve_forever, args=(0.05,), daemon=True).start()

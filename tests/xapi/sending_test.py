@@ -21,6 +21,7 @@ import statement_check
 from lrs_stand_in import StandIn
 
 PROGRAM = ""
+SCENE = str(pathlib.Path(__file__).resolve().parents[2] / "scenes/skills/1_touch_targets.xml")
 LOGIN = "trainer:secret"
 
 
@@ -196,6 +197,71 @@ class Sending(unittest.TestCase):
             self.assertEqual(self.states(), {"pending": 3})
             self.login.chmod(0o644)
             self.assertIn("others may read", self.send(lrs, status=2))
+
+    def certificate(self, name):
+        """A certificate that signs itself, and its key, in one file."""
+        file = self.data / f"{name}.pem"
+        subprocess.run(
+            ["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days",
+             "2", "-subj", f"/CN={name}", "-addext", f"subjectAltName=DNS:{name}", "-keyout", str(file), "-out",
+             str(file) + ".crt"], check=True, capture_output=True)
+        file.write_text(file.read_text() + pathlib.Path(str(file) + ".crt").read_text())
+        return str(file)
+
+    def test_a_store_is_trusted_by_its_certificate_alone(self):
+        self.fill(2)
+        ours, other = self.certificate("localhost"), self.certificate("elsewhere.example")
+        with StandIn(LOGIN, certificate=ours) as lrs:
+            self.assertIn("certificate", self.send(lrs, status=1), "this machine does not know who signed it")
+            self.send(lrs, "--ca", other, status=1)
+            self.assertEqual((lrs.requests, self.states()), (0, {"pending": 2}))
+            self.assertIn("cannot be read", self.send(lrs, "--ca", ours + ".none", status=2))
+            self.send(lrs, "--ca", ours)
+            self.assertEqual(self.states(), {"sent": 2})
+            self.assertEqual(set(lrs.kept), set(self.expected()))
+        self.fill(1, "P08")
+        with StandIn(LOGIN, certificate=other) as lrs:
+            self.send(lrs, "--ca", other, status=1)  # a certificate of another name
+            self.assertEqual((lrs.requests, self.states()), (0, {"sent": 2, "pending": 1}))
+
+    def sender_of(self, session):
+        """Process id of a session's sender; None if it has none."""
+        for folder in pathlib.Path("/proc").iterdir():
+            if not folder.name.isdigit():
+                continue
+            try:
+                words = (folder / "cmdline").read_bytes().split(b"\0")
+                parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
+            except (OSError, ValueError, IndexError):
+                continue  # it has ended meanwhile
+            if parent == session.pid and b"send" in words:
+                return int(folder.name)
+        return None
+
+    def test_a_session_brings_its_sender_back(self):
+        self.fill(1)
+        with StandIn(LOGIN) as lrs:
+            command = [PROGRAM, "play", SCENE, "--no-browser", "--no-reload", "--port", "0", "--data", str(self.data),
+                       "--lrs", lrs.url, "--lrs-login", str(self.login)]
+            bus = f"udpm://239.255.76.67:{20000 + os.getpid() % 20000}?ttl=0"
+            with open(self.data / "session.log", "w") as log:
+                session = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT,
+                                           env={**os.environ, "LCM_DEFAULT_URL": bus})
+            said = (self.data / "session.log").read_text
+            try:
+                self.assertTrue(wait_for(lambda: self.states() == {"sent": 1} or session.poll() is not None), said())
+                if session.poll() is not None and "multicast" in said():
+                    self.skipTest(said())
+                self.assertIsNone(session.poll(), said())
+                first = self.sender_of(session)
+                os.kill(first, signal.SIGKILL)
+                self.fill(2, "P08")
+                self.assertTrue(wait_for(lambda: self.states() == {"sent": 3}), said())
+                self.assertNotIn(self.sender_of(session), (None, first))
+                self.assertEqual(set(lrs.kept), set(self.expected()))
+            finally:
+                session.send_signal(signal.SIGINT)
+                session.wait(60)
 
     def test_who_is_forgotten_is_not_sent(self):
         self.fill(4)

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "core/base/input_error.h"
 #include "core/base/text.h"
@@ -66,10 +67,14 @@ struct HttpRecordStore::Connection {
   CURL* handle;
 };
 
-HttpRecordStore::HttpRecordStore(const std::string& endpoint, Login login)
+HttpRecordStore::HttpRecordStore(const std::string& endpoint, Login login, const std::filesystem::path& authorities)
     : statements_(statements_address(endpoint)),
       login_(std::move(login)),
-      connection_(std::make_unique<Connection>()) {}
+      authorities_(authorities.string()),
+      connection_(std::make_unique<Connection>()) {
+  if (!authorities.empty() && !std::ifstream(authorities).good())
+    throw InputError(authorities_ + ": the certificates cannot be read");
+}
 HttpRecordStore::~HttpRecordStore() = default;
 
 Answer HttpRecordStore::post(const std::string& statements) { return ask(statements_, &statements); }
@@ -97,6 +102,7 @@ Answer HttpRecordStore::ask(const std::string& url, const std::string* body) {
   curl_easy_setopt(c, CURLOPT_ERRORBUFFER, why);
   curl_easy_setopt(c, CURLOPT_WRITEFUNCTION, take);
   curl_easy_setopt(c, CURLOPT_WRITEDATA, &answer.text);
+  if (!authorities_.empty()) curl_easy_setopt(c, CURLOPT_CAINFO, authorities_.c_str());
   if (!login_.user.empty()) {
     curl_easy_setopt(c, CURLOPT_HTTPAUTH, CURLAUTH_BASIC);
     curl_easy_setopt(c, CURLOPT_USERNAME, login_.user.c_str());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A learning record store over HTTP. Certificates are verified, and no redirection is followed.
 #pragma once
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -12,8 +13,9 @@ namespace insula::xapi {
 class HttpRecordStore : public RecordStore {
  public:
   /// endpoint: address of the store, to which "/statements" is added. Throws InputError if it is no address, if it
-  /// contains a name or a password, or if it is not encrypted and leads to another machine.
-  HttpRecordStore(const std::string& endpoint, Login login);
+  /// contains a name or a password, or if it is not encrypted and leads to another machine. authorities: file of the
+  /// certificates (PEM) that are trusted; empty: those of this machine. Throws InputError if it cannot be read.
+  HttpRecordStore(const std::string& endpoint, Login login, const std::filesystem::path& authorities = {});
   ~HttpRecordStore() override;
 
   Answer post(const std::string& statements) override;
@@ -25,6 +27,7 @@ class HttpRecordStore : public RecordStore {
 
   std::string statements_;  // address
   Login login_;
+  std::string authorities_;  // file
   std::unique_ptr<Connection> connection_;
 };
 

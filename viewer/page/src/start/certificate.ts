@@ -2,6 +2,7 @@
 // The certificate of a curriculum that was passed, as a page to print: certificate.html?person=NAME&curriculum=ID.
 import './certificate.css';
 import { el } from '../hud/dom';
+import { momentText } from '../languages/numbers';
 import { languageTag, text } from '../languages/text';
 import { Api } from './api';
 import { certificateOf } from './certificate_api';
@@ -19,7 +20,7 @@ function taskRow(t: CertifiedTask): HTMLElement {
     attempts: t.attemptsToLevel,
   });
   const runs = t.runs.map((r) =>
-    el('li', {}, `${new Date(r.beganMs).toLocaleString(languageTag())}: ${resultText(r)} `, el('code', {}, r.uuid)),
+    el('li', {}, `${momentText(new Date(r.beganMs))}: ${resultText(r)} `, el('code', {}, r.uuid)),
   );
   return el(
     'tr',

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The curriculum that somebody follows: what is next as one button, and all modules with their tasks and gates.
 import { el } from '../hud/dom';
+import { momentText } from '../languages/numbers';
 import { languageTag, text } from '../languages/text';
 import type { Api } from './api';
 import { askCourse, askCurricula, follow } from './course_api';
@@ -23,7 +24,7 @@ export function standingText(standing: Standing): string {
     case 'locked':
       return text('locked');
     case 'open':
-      return text('open');
+      return text('not passed yet');
     case 'passed':
       return text('✓ passed');
     case 'due':
@@ -252,9 +253,7 @@ export class CoursePanel {
   /** The attempts behind the gates, the newest first. */
   private counted(t: CourseTask): HTMLElement[] {
     if (t.runs.length === 0) return [];
-    const rows = [...t.runs]
-      .reverse()
-      .map((r) => el('li', {}, `${new Date(r.beganMs).toLocaleString(languageTag())}: ${resultText(r)}`));
+    const rows = [...t.runs].reverse().map((r) => el('li', {}, `${momentText(new Date(r.beganMs))}: ${resultText(r)}`));
     return [
       el('details', { class: 'counted' }, el('summary', {}, text('Attempts that counted')), el('ul', {}, ...rows)),
     ];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The condition of a gate, as training/progress/curriculum_json.h writes it, checked and in the reader's words.
-import { fixed, quantity } from '../languages/numbers';
+import { quantity, significant } from '../languages/numbers';
 import { said } from '../languages/said';
 import { text } from '../languages/text';
 import { number, numberOrNull, object, text as words } from './api';
@@ -41,9 +41,7 @@ export function conditionOf(json: unknown): Condition {
   };
 }
 
-/** As many digits as the number has, six at most. */
-const shown = (value: number, unit: string): string =>
-  quantity(fixed(value, Math.min(6, (String(value).split('.')[1] ?? '').length)), unit);
+const shown = (value: number, unit: string): string => quantity(significant(value, 6), unit);
 
 export function limitsText({ atLeast, atMost, unit }: Pick<Condition, 'atLeast' | 'atMost' | 'unit'>): string {
   const least = atLeast === null ? '' : shown(atLeast, unit);
