@@ -134,7 +134,9 @@ WarmUp CurriculumChecker::warm_up(const WarmUpElement& from) {
 }
 
 std::filesystem::path CurriculumChecker::as_named(const CurriculumElement& from, const Param<File>& file) {
-  return (std::filesystem::path(from.part->shown).parent_path() / file.text()).lexically_normal();
+  const auto named = (std::filesystem::path(from.part->shown).parent_path() / file.text()).lexically_normal();
+  std::error_code error;  // one that was found among the shipped files keeps its whole path
+  return std::filesystem::equivalent(named, file(), error) ? named : file();
 }
 
 const SceneFacts* CurriculumChecker::facts(const CurriculumElement& from, const Param<File>& scene) {
