@@ -235,7 +235,7 @@ export class CoursePanel {
     begin.setAttribute('aria-label', text('Begin {task}', { task: t.title }));
     begin.onclick = () => this.actions.begin(t.terms);
     begin.disabled = t.standing === 'locked' || t.terms.scene === '';
-    const counted = text('{attempts, plural, =0 {no attempt yet} one {# attempt} other {# attempts}}', {
+    const counted = text('{attempts, plural, =0 {No attempt yet} one {# attempt} other {# attempts}}', {
       attempts: t.attempts,
     });
     return el(
