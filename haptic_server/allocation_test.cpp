@@ -123,7 +123,9 @@ TEST(Allocation, TheServersTickDoesNone) {
   insula_lcm::hand_input_t input{};
   input.q[0] = 1;
   long counted_here = 0;
-  for (int k = 0; k < 400; ++k) {  // start, placement, running, takeover, reset, a new engine, silence
+  int guided = 0;
+  for (int k = 0; k < 400; ++k) {  // start, placement, running, a soft guide, takeover, reset, a new engine, silence
+    if (k > 30 && k % 16 == 2) rig.send_guide(0, 1);
     if (k == 100) rig.engine_bus.publish(channel::hand_input, rig.encoded(input));
     if (k == 200) rig.sim_time = 0;
     if (k == 300) {
@@ -138,10 +140,12 @@ TEST(Allocation, TheServersTickDoesNone) {
     const long before = allocations.load();
     rig.server->tick(rig.clock.now_ns());
     counted_here += allocations.load() - before;
+    guided += rig.server->guided(0).norm() > 0.01;
     rig.server->publish_state();
     rig.engine_bus.poll(0);
   }
   EXPECT_EQ(counted_here, 0);
+  EXPECT_GT(guided, 50) << "ticks with a soft force";
   EXPECT_TRUE(rig.server->reading(0).connected);
 }
 

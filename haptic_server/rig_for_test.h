@@ -35,7 +35,7 @@ struct Rig {
   std::unique_ptr<HapticServer> server;
   insula_lcm::device_state_t state{};
   bool state_seen = false;
-  std::int64_t session = 100, sequence = 0;
+  std::int64_t session = 100, sequence = 0, guide_sequence = 0;
   double sim_time = 0;
   bool engine_alive = true;
   bool viewer_holds = false;  ///< the viewer sends `input` every 16 ms
@@ -76,6 +76,23 @@ struct Rig {
     info.motion = motion_file;
     info.bundle = bundle;
     engine_bus.publish(channel::scene_info, encoded(info));
+  }
+
+  /// One message of a soft guide, as the engine sends in each step while it lasts.
+  insula_lcm::soft_guide_t guide_message(int hand, std::int64_t number) {
+    insula_lcm::soft_guide_t m{};
+    m.session = session;
+    m.sequence = ++guide_sequence;
+    m.time_us = clock.now_ns() / 1000;
+    m.number = number;
+    m.hand = std::int8_t(hand);
+    m.direction[2] = 1;
+    m.force_N = 0.4;
+    m.duration_s = 1.2;
+    return m;
+  }
+  void send_guide(int hand, std::int64_t number) {
+    engine_bus.publish(channel::soft_guide, encoded(guide_message(hand, number)));
   }
 
   template <class Message>

@@ -55,6 +55,7 @@ HapticServer::HapticServer(Bus& bus, std::array<DeviceChoice, 2> devices, const 
   bus_.subscribe(channel::scene_info, [this](Bytes b) { on_scene(b); });
   bus_.subscribe(channel::hand_input, [this](Bytes b) { on_input(b); });
   bus_.subscribe(channel::sim_event, [this](Bytes b) { on_event(b); });
+  bus_.subscribe(channel::soft_guide, [this](Bytes b) { on_guide(b); });
   bus_.subscribe(channel::user_command, [this](Bytes b) { on_command(b); });
 }
 
@@ -166,6 +167,17 @@ Vec3 HapticServer::force_output(std::size_t i, double dt, bool alive) noexcept {
   return hand.force_output.apply(hand.device->profile(), dt, force, hand.reading.v, up, alive);
 }
 
+// The soft force of a guide, which the gate takes with all others.
+Vec3 HapticServer::soft_guide(std::size_t i, double dt, bool alive, std::int64_t now) noexcept {
+  Hand& hand = hands_[i];
+  const GuideWish& wish = guides_.front()[i];
+  const std::int64_t age = now - wish.receive_ns;
+  const bool fresh = wish.session == session_ && age >= 0 && age <= std::int64_t(SoftGuide::stale_after_s * 1e9);
+  if (fresh && alive) hand.soft_guide.take(wish);
+  hand.guided = hand.soft_guide.advance(dt, fresh, alive, hand.reading.pose.p);
+  return hand.guided;
+}
+
 namespace {
 TickSample::Hand sample_of(const Pose& device, const Vec3& force) noexcept {
   const Eigen::Vector3f p = device.p.cast<float>(), f = force.cast<float>();
@@ -173,6 +185,27 @@ TickSample::Hand sample_of(const Pose& device, const Vec3& force) noexcept {
   return {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}, {f.x(), f.y(), f.z()}};
 }
 }  // namespace
+
+// Sends this tick's forces through the gates. True if all of them are zero.
+bool HapticServer::send_forces(double dt, std::int64_t now, TickSample& sample) noexcept {
+  bool quiet = true;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Hand& hand = hands_[i];
+    const ServoHand& wanted = last_.hand[i];
+    const bool alive = live(wanted, now);
+    // What a guide gives is bounded by itself, and is no sign of a contact that is not passive.
+    hand.energy.observe(hand.gate.force() - hand.guided, hand.reading.pose.p);
+    const Vec3 force = force_output(i, dt, alive) + soft_guide(i, dt, alive, now);
+    hand.gate.apply(dt, alive, force, hand.force_output.settings().force_scale * wanted.torque);
+    sample.given_J[i] = float(hand.energy.given());
+    hand.device->write(hand.gate.force(), hand.gate.torque());
+    sample.fresh[i] = alive && wanted.force != hand.last_force;
+    hand.last_force = wanted.force;
+    sample.hand[i] = sample_of(hand.reading.pose, hand.gate.force());
+    quiet = quiet && hand.gate.force().isZero(0) && hand.gate.torque().isZero(0);
+  }
+  return quiet;
+}
 
 void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
   const std::int64_t now = clock_.now_ns();
@@ -187,6 +220,7 @@ void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
   take_problem(now);
   place_hands(now);
   take_wishes();
+  guides_.update();
 
   const double arm_dt = std::clamp(dt, 0.0, longest_arm_step_s);
   const double script_time = motion_clock_.advance(arm_dt);
@@ -216,20 +250,7 @@ void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
   sample.rows = std::int16_t(last_.rows);
   sample.residual_m = float(last_.stats.residual_m);
 
-  bool quiet = true;
-  for (std::size_t i = 0; i < 2; ++i) {
-    Hand& hand = hands_[i];
-    const ServoHand& wanted = last_.hand[i];
-    const bool alive = live(wanted, now);
-    hand.energy.observe(hand.gate.force(), hand.reading.pose.p);
-    hand.gate.apply(dt, alive, force_output(i, dt, alive), hand.force_output.settings().force_scale * wanted.torque);
-    sample.given_J[i] = float(hand.energy.given());
-    hand.device->write(hand.gate.force(), hand.gate.torque());
-    sample.fresh[i] = alive && wanted.force != hand.last_force;
-    hand.last_force = wanted.force;
-    sample.hand[i] = sample_of(hand.reading.pose, hand.gate.force());
-    quiet = quiet && hand.gate.force().isZero(0) && hand.gate.torque().isZero(0);
-  }
+  const bool quiet = send_forces(dt, now, sample);
   quiet_.store(quiet, std::memory_order_relaxed);
   samples_.push(sample);
   leave_snapshot(now);

@@ -22,6 +22,7 @@
 #include "haptic_server/sample_ring.h"
 #include "haptic_server/scene_setup.h"
 #include "haptic_server/servo.h"
+#include "haptic_server/soft_guide.h"
 #include "haptic_server/status.h"
 #include "haptic_server/triple_buffer.h"
 
@@ -37,7 +38,8 @@ struct ServerOptions {
 };
 
 /// Three threads work here without locks: `receive` in one, `tick` in the servo thread, `publish_*` in a third.
-/// Messages: in HAPTIC_PROBLEM, SCENE_INFO, SIM_EVENT, HAND_INPUT, USER_COMMAND; out DEVICE_STATE, HAPTIC_STATUS.
+/// Messages: in HAPTIC_PROBLEM, SCENE_INFO, SIM_EVENT, SOFT_GUIDE, HAND_INPUT, USER_COMMAND; out DEVICE_STATE,
+/// HAPTIC_STATUS.
 ///
 /// A new engine (session), or a simulated time that goes back, puts simulated arms at the start of the motion or at
 /// home, under control of the script. A server that joins a running scene starts its arms at the engine's tool poses
@@ -66,6 +68,8 @@ class HapticServer {
 
   /// Servo thread, or any thread after its end.
   const Vec3& force(int hand) const { return hands_[std::size_t(hand)].gate.force(); }
+  /// The part of it that a soft guide made.
+  const Vec3& guided(int hand) const { return hands_[std::size_t(hand)].guided; }
   const DeviceReading& reading(int hand) const { return hands_[std::size_t(hand)].reading; }
   const ServoResult& last() const { return last_; }
   std::int64_t messages_refused() const { return refused_.load(std::memory_order_relaxed); }
@@ -101,6 +105,8 @@ class HapticServer {
     bool to_be_laid = true;  ///< since the start of the session; a real arm keeps its frame until the new one is known
     std::int64_t wishes_seen = 0;
     Vec3 last_force = Vec3::Zero();
+    SoftGuide soft_guide;
+    Vec3 guided = Vec3::Zero();  ///< part of the last force that the guide made, N
   };
   struct Snapshot {
     std::int64_t time_ns = 0;
@@ -116,6 +122,7 @@ class HapticServer {
   void on_scene(Bytes bytes);
   void on_input(Bytes bytes);
   void on_event(Bytes bytes);
+  void on_guide(Bytes bytes);
   void on_command(Bytes bytes);
   void refuse(const std::string& channel, const std::string& why);
   // Servo thread.
@@ -125,6 +132,8 @@ class HapticServer {
   const Motion* motion() const noexcept;
   bool live(const ServoHand& hand, std::int64_t now) const noexcept;
   Vec3 force_output(std::size_t hand, double dt, bool alive) noexcept;
+  Vec3 soft_guide(std::size_t hand, double dt, bool alive, std::int64_t now) noexcept;
+  bool send_forces(double dt, std::int64_t now, TickSample& sample) noexcept;
   void leave_snapshot(std::int64_t now) noexcept;
   // Publishing thread.
   void add_tick(const TickSample& sample);
@@ -142,12 +151,16 @@ class HapticServer {
   insula_lcm::scene_info_t scene_info_{};
   insula_lcm::hand_input_t hand_input_{};
   insula_lcm::sim_event_t event_{};
+  insula_lcm::soft_guide_t guide_{};
+  ArrivalOrder guide_order_;
+  std::array<GuideWish, 2> guide_wishes_{};
   insula_lcm::user_command_t command_{};
   std::string why_;
 
   // Across threads.
   TripleBuffer<Received> problems_;
   TripleBuffer<std::array<Wish, 2>> inputs_;
+  TripleBuffer<std::array<GuideWish, 2>> guides_;
   TripleBuffer<Snapshot> snapshots_;
   SampleRing<TickSample, 8192> samples_;
   SetupExchange setups_;

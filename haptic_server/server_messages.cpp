@@ -96,6 +96,19 @@ void HapticServer::on_event(Bytes bytes) {
       (severed ? severed_ : shut_)[i].fetch_add(1, std::memory_order_relaxed);
 }
 
+void HapticServer::on_guide(Bytes bytes) {
+  if (!decode(bytes, guide_, why_)) return refuse("SOFT_GUIDE", why_);
+  const auto& m = guide_;
+  const std::int64_t now = clock_.now_ns(), age_us = now / 1000 - m.time_us;
+  if (age_us < -future_us) return refuse("SOFT_GUIDE", "stamped with a time to come");
+  if (age_us > std::int64_t(SoftGuide::stale_after_s * 1e6)) return;  // late
+  if (m.session != order_.session() || !guide_order_.take(m.session, m.sequence, now)) return;
+  const Vec3 direction = Vec3(m.direction[0], m.direction[1], m.direction[2]).normalized();
+  guide_wishes_[m.hand == 1 ? 1 : 0] = {m.session, m.number, now, m.hand, direction, m.force_N, m.duration_s};
+  guides_.back() = guide_wishes_;
+  guides_.publish();
+}
+
 bool HapticServer::publish_state() {
   if (!snapshots_.update()) return false;
   const Snapshot& s = snapshots_.front();

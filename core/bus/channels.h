@@ -13,6 +13,7 @@ inline constexpr std::string_view render_frame = "RENDER_FRAME";      ///< rende
 inline constexpr std::string_view metrics = "METRICS";                ///< metrics_t, engine -> viewers
 inline constexpr std::string_view scene_info = "SCENE_INFO";          ///< scene_info_t, engine -> all
 inline constexpr std::string_view servo_ticks = "SERVO_TICKS";        ///< servo_ticks_t, haptic server -> recorder
+inline constexpr std::string_view soft_guide = "SOFT_GUIDE";          ///< soft_guide_t, engine -> haptic server
 inline constexpr std::string_view sim_event = "SIM_EVENT";            ///< sim_event_t, engine -> all
 inline constexpr std::string_view user_command = "USER_COMMAND";      ///< user_command_t, viewer -> engine
 inline constexpr std::string_view hand_input = "HAND_INPUT";          ///< hand_input_t, viewer -> haptic server

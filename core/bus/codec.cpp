@@ -143,6 +143,13 @@ bool well_formed(const insula_lcm::sim_event_t* type, Bytes bytes) {
   return in.at_end();
 }
 
+bool well_formed(const insula_lcm::soft_guide_t* type, Bytes bytes) {
+  ByteReader in(bytes);
+  if (!starts_as(in, type)) return false;
+  in.take(4 * size_i64 + size_i8 + 5 * size_f64);
+  return in.at_end();
+}
+
 bool well_formed(const insula_lcm::user_command_t* type, Bytes bytes) {
   ByteReader in(bytes);
   if (!starts_as(in, type)) return false;

@@ -19,6 +19,7 @@
 #include <insula_lcm/servo_ticks_t.hpp>
 #include <insula_lcm/session_step_t.hpp>
 #include <insula_lcm/sim_event_t.hpp>
+#include <insula_lcm/soft_guide_t.hpp>
 #include <insula_lcm/user_command_t.hpp>
 #include <optional>
 #include <string>
@@ -42,6 +43,7 @@ bool well_formed(const insula_lcm::scene_info_t*, Bytes bytes);
 bool well_formed(const insula_lcm::servo_ticks_t*, Bytes bytes);
 bool well_formed(const insula_lcm::session_step_t*, Bytes bytes);
 bool well_formed(const insula_lcm::sim_event_t*, Bytes bytes);
+bool well_formed(const insula_lcm::soft_guide_t*, Bytes bytes);
 bool well_formed(const insula_lcm::user_command_t*, Bytes bytes);
 
 /// Empties vectors whose new count is 0, which the generated decoder leaves unchanged in a reused object.

@@ -173,6 +173,20 @@ insula_lcm::sim_event_t sample() {
   return m;
 }
 template <>
+insula_lcm::soft_guide_t sample() {
+  insula_lcm::soft_guide_t m{};
+  m.session = 11;
+  m.sequence = 3;
+  m.time_us = 4'711;
+  m.number = 2;
+  m.hand = 1;
+  m.direction[0] = 0.6;
+  m.direction[2] = -0.8;
+  m.force_N = 0.3;
+  m.duration_s = 1.2;
+  return m;
+}
+template <>
 insula_lcm::user_command_t sample() {
   insula_lcm::user_command_t m{};
   m.sender = "viewer-1";
@@ -192,7 +206,7 @@ class Codec : public ::testing::Test {};
 using Types = ::testing::Types<insula_lcm::device_state_t, insula_lcm::hand_input_t, insula_lcm::haptic_status_t,
                                insula_lcm::metrics_t, insula_lcm::render_frame_t, insula_lcm::scene_info_t,
                                insula_lcm::servo_ticks_t, insula_lcm::session_step_t, insula_lcm::sim_event_t,
-                               insula_lcm::user_command_t>;
+                               insula_lcm::soft_guide_t, insula_lcm::user_command_t>;
 TYPED_TEST_SUITE(Codec, Types);
 
 TYPED_TEST(Codec, RoundTrip) {
@@ -251,6 +265,7 @@ TYPED_TEST(Codec, OtherTypesAreRefused) {
   taken += decode<insula_lcm::servo_ticks_t>(bytes).has_value();
   taken += decode<insula_lcm::session_step_t>(bytes).has_value();
   taken += decode<insula_lcm::sim_event_t>(bytes).has_value();
+  taken += decode<insula_lcm::soft_guide_t>(bytes).has_value();
   taken += decode<insula_lcm::user_command_t>(bytes).has_value();
   EXPECT_EQ(taken, 1);
 }
@@ -283,6 +298,21 @@ TEST(Plausible, HandInput) {
   expect_refused<T>("far", [](T& m) { m.p_m[0] = 50; });
   expect_refused<T>("quaternion", [](T& m) { m.q[2] = 0.8001 * 2; });
   expect_refused<T>("hand", [](T& m) { m.hand = -1; });
+}
+
+TEST(Plausible, SoftGuide) {
+  using T = insula_lcm::soft_guide_t;
+  expect_refused<T>("force", [](T& m) { m.force_N = 0.501; });
+  expect_refused<T>("against its direction", [](T& m) { m.force_N = -0.1; });
+  expect_refused<T>("nan force", [](T& m) { m.force_N = NAN; });
+  expect_refused<T>("direction", [](T& m) { m.direction[1] = 0.1; });
+  expect_refused<T>("no direction", [](T& m) { m.direction[0] = m.direction[2] = 0; });
+  expect_refused<T>("nan direction", [](T& m) { m.direction[1] = NAN; });
+  expect_refused<T>("long", [](T& m) { m.duration_s = 1.6; });
+  expect_refused<T>("short", [](T& m) { m.duration_s = 0.5; });
+  expect_refused<T>("nan duration", [](T& m) { m.duration_s = NAN; });
+  expect_refused<T>("hand", [](T& m) { m.hand = -1; });
+  expect_refused<T>("number", [](T& m) { m.number = 0; });
 }
 
 TEST(Plausible, RenderFrame) {

@@ -209,6 +209,19 @@ bool plausible(const insula_lcm::sim_event_t& m, std::string& why) {
   return true;
 }
 
+bool plausible(const insula_lcm::soft_guide_t& m, std::string& why) {
+  if (m.session < 0 || m.sequence < 0 || m.time_us < 0) return fail(why, "negative session, sequence or time");
+  if (m.number < 1) return fail(why, "guides are numbered from 1");
+  if (m.hand != 0 && m.hand != 1) return fail(why, "hand is neither left nor right");
+  const double* d = m.direction;
+  if (!within(d, 3, 2) || std::abs(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - 1) > 2 * limits::unit_tolerance)
+    return fail(why, "direction is no unit vector");
+  if (!non_negative(m.force_N, limits::guide_N)) return fail(why, "force out of range");
+  if (!(m.duration_s >= limits::guide_s[0] && m.duration_s <= limits::guide_s[1]))
+    return fail(why, "duration out of range");
+  return true;
+}
+
 bool plausible(const insula_lcm::user_command_t& m, std::string& why) {
   if (m.time_us < 0) return fail(why, "negative time");
   if (m.command.empty() || !word_ok(m.command, 64)) return fail(why, "command is no short word");

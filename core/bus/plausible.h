@@ -11,6 +11,7 @@
 #include <insula_lcm/servo_ticks_t.hpp>
 #include <insula_lcm/session_step_t.hpp>
 #include <insula_lcm/sim_event_t.hpp>
+#include <insula_lcm/soft_guide_t.hpp>
 #include <insula_lcm/user_command_t.hpp>
 #include <string>
 
@@ -26,6 +27,7 @@ bool plausible(const insula_lcm::scene_info_t& message, std::string& why);
 bool plausible(const insula_lcm::servo_ticks_t& message, std::string& why);
 bool plausible(const insula_lcm::session_step_t& message, std::string& why);
 bool plausible(const insula_lcm::sim_event_t& message, std::string& why);
+bool plausible(const insula_lcm::soft_guide_t& message, std::string& why);
 bool plausible(const insula_lcm::user_command_t& message, std::string& why);
 
 /// Whether each count equals the size of its vector, so that the generated encoder stays within them.
@@ -48,7 +50,9 @@ inline constexpr double unit_tolerance = 1e-4;  ///< of a quaternion's norm
 inline constexpr double force_N = 1e4;
 inline constexpr double speed_m_s = 1e3;  ///< of a device
 inline constexpr double spin_rad_s = 1e5;
-inline constexpr double opening_rad = 3.2;  ///< of an articulated tool, in either direction
+inline constexpr double guide_N = 0.5;           ///< largest force of a soft guide
+inline constexpr double guide_s[] = {0.6, 1.5};  ///< shortest and longest soft guide
+inline constexpr double opening_rad = 3.2;       ///< of an articulated tool, in either direction
 }  // namespace limits
 
 /// |v_i| <= most for all; false for NaN.

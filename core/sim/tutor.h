@@ -12,15 +12,16 @@ namespace insula {
 
 /// A hint with what it watches, at one time.
 struct HintCause {
-  std::string id;       ///< of the hint
-  std::string text;     ///< for the trainee
-  std::string watched;  ///< channel or metric: "brain_force.left.force"
-  std::string value;    ///< of it, with its unit: "160 mN"
-  std::string limit;    ///< that is guarded, likewise
-  double share = 0;     ///< of the way to the limit; 1: at the limit
-  double warning = 1;   ///< share from which the hint holds
-  bool holds = false;   ///< now
-  int hand = -1;        ///< whose tool is meant: 0 left, 1 right; -1: none or both
+  std::string id;            ///< of the hint
+  std::string text;          ///< for the trainee
+  std::string watched;       ///< channel or metric: "brain_force.left.force"
+  std::string value;         ///< of it, with its unit: "160 mN"
+  std::string limit;         ///< that is guarded, likewise
+  double share = 0;          ///< of the way to the limit; 1: at the limit
+  double warning = 1;        ///< share from which the hint holds
+  bool holds = false;        ///< now
+  int hand = -1;             ///< whose tool is meant: 0 left, 1 right; -1: none or both
+  Vec3 away = Vec3::Zero();  ///< unit, scene frame: leads that hand away from the fault; zero: no direction is known
 };
 
 struct Cue {

@@ -84,7 +84,8 @@ std::vector<const RigidBody*> picture_tools(const Simulation& simulation) {
   return out;
 }
 
-void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& f, const SessionNote& note) {
+void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& f, const SessionNote& note,
+                CauseLines* causes) {
   const StepReport& r = simulation.report();
   const auto bodies = picture_bodies(simulation);
   f.sim_time_s = r.time;
@@ -121,7 +122,7 @@ void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& f, con
   f.step_period_ms = simulation.h() * 1000;
   f.rows = r.rows;
   f.sweeps = r.solve.sweeps;
-  f.hud_json = hud_json(simulation, note);
+  f.hud_json = hud_json(simulation, note, causes);
 }
 
 }  // namespace insula

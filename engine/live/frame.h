@@ -8,6 +8,7 @@
 
 namespace insula {
 
+class CauseLines;
 class DeformableBody;
 
 /// The bodies of frames and bundles: deformable bodies in document order. A body's position in the list is its `index`
@@ -18,7 +19,8 @@ std::vector<const DeformableBody*> picture_bodies(const Simulation& simulation);
 std::vector<const RigidBody*> picture_tools(const Simulation& simulation);
 
 /// Fills a frame from the simulation's last step; keeps the capacity of its vectors. The caller fills the header
-/// fields.
-void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& frame, const SessionNote& note = {});
+/// fields. causes: as for hud_json().
+void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& frame, const SessionNote& note = {},
+                CauseLines* causes = nullptr);
 
 }  // namespace insula

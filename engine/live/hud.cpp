@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/sim/tutor.h"
+#include "engine/live/cause_lines.h"
 #include "engine/reports/exercise_outcome.h"
 #include "engine/reports/hints_report.h"
 
@@ -53,31 +54,31 @@ void add_exercise(SortedJson& j, const Exercise* exercise, double time) {
   if (log.end_time() >= 0) j["elapsed_s"] = rounded(log.end_time(), 3);
 }
 
-/// Causes that a page gets, the worst first: it is sent with each frame.
-constexpr std::size_t most_causes = 6;
-
 /// The tutor: the last cue, unless this is a test; what is near a cue, for the instructor; all cues after the end.
-void add_tutor(SortedJson& j, const Exercise* exercise, SessionMode mode) {
+void add_tutor(SortedJson& j, const Simulation& simulation, const SessionNote& note, CauseLines& causes) {
+  const Exercise* exercise = simulation.exercise();
+  const SessionMode mode = note.mode;
   SortedJson& out = j["tutor"];
+  out["soft_guide"] = note.soft_guide;
+  out["guided"] = note.guided < 0 ? "" : std::string(hand_name(note.guided));
   out["cue"] = nullptr;
   out["causes"] = out["cues"] = SortedJson::array();
   const GivesCues* tutor = exercise ? tutor_of(*exercise) : nullptr;
   if (!tutor) return;
   const std::vector<Cue>& cues = tutor->cues();
   if (!cues.empty() && mode != SessionMode::test) out["cue"] = SortedJson(cues_json({cues.back()}).front());
-  std::vector<HintCause> causes = tutor->causes();
-  if (causes.size() > most_causes) causes.resize(most_causes);
-  for (const HintCause& cause : causes) out["causes"].push_back(SortedJson(hint_json(cause)));
+  out["causes"] = causes.of(*tutor, simulation.time());
   if (exercise->log().state() != ExerciseState::running) out["cues"] = SortedJson(cues_json(cues));
 }
 
 }  // namespace
 
-std::string hud_json(const Simulation& simulation, const SessionNote& note) {
+std::string hud_json(const Simulation& simulation, const SessionNote& note, CauseLines* kept) {
   const StepReport& r = simulation.report();
   SortedJson j;
   add_exercise(j, simulation.exercise(), r.time);
-  add_tutor(j, simulation.exercise(), note.mode);
+  CauseLines fresh;
+  add_tutor(j, simulation, note, kept ? *kept : fresh);
   j["mode"] = name_of(note.mode);
   j["report"] = note.report;
   j["recording"] = note.recording;

@@ -8,8 +8,10 @@
 
 namespace insula {
 
+class CauseLines;
+
 /// The hud_json of render_frame_t for the last step. It has the same keys with and without an exercise
-/// (docs/scripting.md).
-std::string hud_json(const Simulation& simulation, const SessionNote& note = {});
+/// (docs/scripting.md). causes: keeps what is near a hint from call to call; null: it is made anew.
+std::string hud_json(const Simulation& simulation, const SessionNote& note = {}, CauseLines* causes = nullptr);
 
 }  // namespace insula

@@ -23,6 +23,7 @@
 #include "engine/live/notice.h"
 #include "engine/live/publisher.h"
 #include "engine/live/session_mode.h"
+#include "engine/live/soft_guiding.h"
 #include "engine/reports/session_reports.h"
 #include "engine/session/live_recording.h"
 
@@ -47,6 +48,7 @@ struct Inputs {
   bool pause = false, reset = false, quit = false;
   bool driven = false;                                     ///< a person has moved a hand since the start
   std::optional<std::string> begin;                        ///< argument of the last "begin"
+  std::optional<std::string> soft_guide;                   ///< argument of the last "soft_guide"
   std::vector<std::string> read;                           ///< messages that the trainee has read
   std::vector<std::pair<std::string, std::string>> asked;  ///< command and argument, in order of arrival
 
@@ -86,6 +88,7 @@ struct Inputs {
       else if (m.command == "reset") reset = true;
       else if (m.command == "quit") quit = true;
       else if (m.command == "begin") begin = m.argument;
+      else if (m.command == "soft_guide") soft_guide = m.argument;
       else if (m.command == "release") return;  // the haptic server's
       else if (m.command == "read") {
         if (read.size() < max_requested) read.push_back(m.argument);
@@ -272,7 +275,12 @@ class LiveSession {
       }
       take_requests();
       keep_reviews();
-      publisher_.note({mode_, reports_.last_report(), recording_.file(), recording_.failure()});
+      publisher_.note({.mode = mode_,
+                       .report = reports_.last_report(),
+                       .recording = recording_.file(),
+                       .soft_guide = guiding_.chosen(),
+                       .guided = guiding_.now() ? guiding_.now()->hand : -1,
+                       .unrecorded = recording_.failure()});
       const bool waits = !stands() && wait_for_hands();
       if (stands()) stand_still();
       else if (!waits && !step()) continue;
@@ -365,12 +373,27 @@ class LiveSession {
       start_again();
       spdlog::info("reset");
     }
+    if (inputs_.soft_guide) choose_soft_guide(*inputs_.soft_guide);
+    inputs_.soft_guide.reset();
     pass_on_receipts();
     for (const auto& [verb, argument] : inputs_.asked) {
       const std::string why = simulation_.command(verb, argument);
       if (!why.empty()) spdlog::info("{} \"{}\" refused: {}", verb, shown(argument), why);
     }
     inputs_.asked.clear();
+  }
+
+  /// "on" or "off". Nobody gets a soft force in a test. The choice stays for the session, and the recording has it.
+  void choose_soft_guide(const std::string& choice) {
+    const bool on = choice == "on";
+    std::string why;
+    if (!on && choice != "off") why = "A soft force is \"on\" or \"off\", not " + shown(choice);
+    if (on && mode_ == SessionMode::test) why = "A test gives no soft force";
+    if (!why.empty()) return publisher_.events({{"refused", "soft_guide", why, 0, simulation_.time()}});
+    guiding_.choose(on);
+    const std::vector<Event> said{{"soft_guide", choice, "", 0, simulation_.time()}};
+    publisher_.events(said);
+    recording_.note(said);
   }
 
   void stand_still() {
@@ -434,6 +457,7 @@ class LiveSession {
       return false;
     }
     publisher_.step(simulation_, posed);
+    if (const auto& guiding = guiding_.step(simulation_, mode_)) publisher_.guide(*guiding);
     publisher_.info("running", notice_.text());
     reports_.step(simulation_, posed > 0, follows);
     return true;
@@ -451,6 +475,7 @@ class LiveSession {
   CommandScript commands_;
   Notice notice_;
   Inputs inputs_;
+  SoftGuiding guiding_;
   std::optional<LockstepHands> demonstration_;
   bool ready_ = false;  ///< the scripted hands are at their motion
   bool over_ = false;   ///< the wait for them

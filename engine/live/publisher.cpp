@@ -90,10 +90,22 @@ void Publisher::events(const std::vector<Event>& events) {
   }
 }
 
+void Publisher::guide(const HandGuiding& guiding) {
+  guide_.session = session_;
+  ++guide_.sequence;
+  guide_.time_us = monotonic_us();
+  guide_.number = guiding.number;
+  guide_.hand = std::int8_t(guiding.hand);
+  for (int k = 0; k < 3; ++k) guide_.direction[k] = guiding.direction[k];
+  guide_.force_N = SoftGuiding::force_N;
+  guide_.duration_s = SoftGuiding::duration_s;
+  if (!publish(bus_, channel::soft_guide, guide_, scratch_)) ++failed_;
+}
+
 void Publisher::paused_frame(const Simulation& simulation) { frame(simulation, true); }
 
 void Publisher::frame(const Simulation& simulation, bool paused) {
-  fill_frame(simulation, frame_, note_);
+  fill_frame(simulation, frame_, note_, &causes_);
   frame_.session = session_;
   frame_.sequence = ++frame_sequence_;
   frame_.time_us = monotonic_us();

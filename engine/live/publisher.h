@@ -6,6 +6,7 @@
 #include <insula_lcm/metrics_t.hpp>
 #include <insula_lcm/render_frame_t.hpp>
 #include <insula_lcm/scene_info_t.hpp>
+#include <insula_lcm/soft_guide_t.hpp>
 
 #include "core/bus/bus.h"
 #include "core/haptics/condense.h"
@@ -13,8 +14,10 @@
 #include "core/haptics/haptic_update.h"
 #include "core/haptics/surface_patch_builder.h"
 #include "core/sim/simulation.h"
+#include "engine/live/cause_lines.h"
 #include "engine/live/exchange_pause.h"
 #include "engine/live/session_mode.h"
+#include "engine/live/soft_guiding.h"
 
 namespace insula {
 
@@ -37,6 +40,8 @@ class Publisher {
   void step(const Simulation& simulation, std::int64_t pose_time_us = 0);
   /// Problem, and a frame if one is due, of the last step once more, while the run waits.
   void again(const Simulation& simulation, std::int64_t pose_time_us = 0);
+  /// A soft guide that lasts, in each step.
+  void guide(const HandGuiding& guiding);
   /// Events that belong to no step.
   void events(const std::vector<Event>& events);
   /// Sends only the frame, while paused.
@@ -63,9 +68,11 @@ class Publisher {
                          last_metrics_us_ = 0, failed_ = 0;
   insula_lcm::scene_info_t info_{};
   SessionNote note_;
+  CauseLines causes_;
   int steps_since_frame_ = 0;
   insula_lcm::render_frame_t frame_{};
   insula_lcm::metrics_t metrics_{};
+  insula_lcm::soft_guide_t guide_{};
   ProblemStamp stamp_;
   SurfacePatchBuilder add_patches_;
   ContactFramePrediction predict_frames_;

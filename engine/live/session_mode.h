@@ -32,6 +32,8 @@ struct SessionNote {
   SessionMode mode = SessionMode::practice;
   std::string report = {};      ///< path of the last report that was written; empty: none
   std::string recording = {};   ///< file that the session is recorded into; empty: none
+  bool soft_guide = false;      ///< the trainee has chosen a soft force with each hint
+  int guided = -1;              ///< hand that one draws now: 0 left, 1 right; -1: none
   std::string unrecorded = {};  ///< why it is not recorded although it should be; empty: all is well
 };
 

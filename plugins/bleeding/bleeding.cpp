@@ -192,6 +192,7 @@ void Bleeding::publish() {
   sucked.set(sucked_rate_);
   since.set(since_ >= 0 ? now_ - since_ : std::numeric_limits<double>::quiet_NaN());
   is_open.set(open_);
+  load.set(open_ ? std::numeric_limits<double>::quiet_NaN() : std::max(force_ / force(), sharp_ / sharp_force()));
   pool.set(origin() + height() * bowl_.up, bowl_.up, height() > 0 ? radius() : 0, height());  // radius 0: dry
   Vec3 place = Vec3::Zero(), outward = Vec3::Zero();
   const auto at = [&](int node) -> Vec3 { return Eigen::Map<const Vec3>(on->q().data() + 3 * node); };

@@ -94,6 +94,13 @@ class Bleeding final : public Constraint, public BleedingSource {
                             .digits = 0}};
   Channel<Duration> since{
       this, {.name = "since", .doc = "time since the rupture", .min = "0 s", .shown = Shown::none, .digits = 0}};
+  Channel<Scalar> load{this,
+                       {.name = "load",
+                        .doc = "force on the region over that which tears it; unknown once it is torn",
+                        .min = "0",
+                        .shown = Shown::none,
+                        .display = "%",
+                        .digits = 0}};
   Channel<Scalar> is_open{this,
                           {.name = "open",
                            .doc = "1 while there is a tear, else 0",

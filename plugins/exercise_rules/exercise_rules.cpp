@@ -209,17 +209,28 @@ class FaultForce final : public ExerciseRule, public WatchesLimits {
   std::vector<Watch> watch_;            ///< of each structure: left hand, right hand
 };
 
-class FaultTorn final : public ExerciseRule {
+class FaultTorn final : public ExerciseRule, public WatchesLimits {
  public:
   Param<std::string> text{
       this, {.name = "text", .fallback = "A strand was torn instead of cut", .doc = "what the trainee is told"}};
-  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { fault_ = log.add_fault(id, text()); }
+  void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
+    fault_ = log.add_fault(id, text());
+    sets_ = simulation.scene().all<StrandSet>();
+  }
   void observe(const StepReport& r, ExerciseLog& log) override {
     for (const Event& e : r.events)
       if (e.kind == "strand_torn") log.fault(fault_, r.time, e.value);
   }
+  std::vector<WatchedLimit> watched_limits() const override {
+    std::vector<WatchedLimit> out;
+    for (const StrandSet* set : sets_)
+      if (set->tension_channel() && set->tearing_tension() > 0)
+        out.push_back({set->tension_channel(), 0, dynamic_cast<const Component*>(set), set->tearing_tension()});
+    return out;
+  }
 
  private:
+  std::vector<StrandSet*> sets_;
   int fault_ = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which hint speaks, and when. At most one cue is given in a pause, the one that is worst. A hint speaks once, and
-// again after what it watches has come back by a tenth.
+// Which hint speaks, and when. At most one cue is given in a pause, the one that is worst among the urgent ones, if
+// any. A hint speaks once, and again after what it watches has come back by a tenth.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -14,6 +14,7 @@ struct HintNow {
   double share = std::nan("");  ///< of the way to the limit; NaN: not known
   double warning = 1;           ///< share from which it holds
   double hold = 0;              ///< s, for which it must hold
+  bool urgent = true;           ///< a fault is near; else it can wait for those
 };
 
 class CueChoice {
@@ -32,7 +33,7 @@ class CueChoice {
       m.held = above ? m.held + h : 0;
       if (!(hint.share >= 0.9 * hint.warning)) m.armed = true;
       m.holds = above && m.held >= hint.hold - tolerance;
-      if (m.holds && m.armed && (best < 0 || hint.share > now[std::size_t(best)].share)) best = int(i);
+      if (m.holds && m.armed && (best < 0 || worse(hint, now[std::size_t(best)]))) best = int(i);
     }
     if (best < 0 || time - last_ < pause_ - tolerance) return -1;
     last_ = time;
@@ -46,6 +47,7 @@ class CueChoice {
   }
 
  private:
+  static bool worse(const HintNow& a, const HintNow& b) { return a.urgent != b.urgent ? a.urgent : a.share > b.share; }
   static constexpr double tolerance = 1e-9, never = -std::numeric_limits<double>::infinity();
   struct Memory {
     double held = 0;  ///< s

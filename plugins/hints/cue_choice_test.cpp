@@ -46,6 +46,15 @@ TEST(CueChoice, TheWorstSpeaksAndTheOtherAfterThePause) {
   EXPECT_NEAR(said[2].first - said[1].first, 10, 1e-9);
 }
 
+TEST(CueChoice, AnUrgentOneSpeaksBeforeAWorseOneThatCanWait) {
+  CueChoice choice(2, 10);
+  std::vector<HintNow> hints{{0, 0.5, 0, false}, {0, 0.5, 0, true}};
+  const auto said = spoken(choice, hints, 20, [](int i, double) { return i == 0 ? 3.0 : 0.8; });
+  ASSERT_EQ(said.size(), 2u);
+  EXPECT_EQ(said[0].second, 1);
+  EXPECT_EQ(said[1].second, 0);
+}
+
 TEST(CueChoice, NeverTwoInThePauseHoweverManyHold) {
   CueChoice choice(5, 10);
   const auto said = spoken(choice, std::vector<HintNow>(5, {0, 0.5, 0}), 200,

@@ -15,8 +15,9 @@ struct HintReading {
   double share = std::nan("");  ///< of the way to the limit; NaN: nothing is known
   double value = std::nan("");  ///< of what it watches
   double limit = std::nan("");
-  int hand = -1;          ///< whose value it is
-  std::size_t which = 0;  ///< of several things that it watches
+  int hand = -1;             ///< whose value it is
+  std::size_t which = 0;     ///< of several things that it watches
+  Vec3 away = Vec3::Zero();  ///< leads the hand away from the fault; zero: against its force on tissue
 };
 
 /// A rule that says something before a limit is passed. The tutor of the exercise asks it in each step.
@@ -29,6 +30,11 @@ class Hint : public ExerciseRule {
                     .fallback = "cause",
                     .choices = {"cause", "left", "right", "none"},
                     .doc = "the hand whose tool an arrow points at; cause: the hand whose value it is, if any"}};
+  Param<Vec<Scalar>> away{this,
+                          {.name = "away",
+                           .fallback = "0 0 0",
+                           .doc = "direction in which a soft force draws the hand; 0 0 0: where the hint knows, or "
+                                  "against the force of the hand on what it touches"}};
   Param<Scalar> warning{this,
                         {.name = "warning",
                          .fallback = "1",
@@ -54,19 +60,30 @@ class Hint : public ExerciseRule {
   HintNow look(const StepReport& report) {
     now_ = read(report);
     share.set(now_.share);
-    return {now_.share, warning(), hold()};
+    return {now_.share, warning(), hold(), urgent()};
   }
   void reset() override {
     now_ = {};
     share.set(now_.share);
   }
   const HintReading& now() const { return now_; }
+  /// Unit, scene frame: leads the hand away from the fault; zero: no direction is known.
+  Vec3 direction(const StepReport& report) const {
+    Vec3 out = !away().isZero(0) ? away() : now_.away;
+    if (const int of = hand(); out.isZero(0) && of >= 0)
+      for (const StructureForce& s : report.structures) out -= s.of_hand[std::size_t(of)];
+    const double size = out.norm();
+    return size > 0 ? Vec3(out / size) : Vec3(Vec3::Zero());
+  }
   int hand() const { return at.is("left") ? 0 : at.is("right") ? 1 : at.is("none") ? -1 : now_.hand; }
 
   /// Name of what it watches: a channel or a metric.
   virtual std::string watched() const = 0;
   /// A value of it as people read it, with its unit.
   virtual std::string worded(double value) const = 0;
+
+  /// Whether it tells of a fault that is near. Those go first.
+  virtual bool urgent() const { return true; }
 
  protected:
   virtual void find(PrepareContext& context, const Simulation& simulation) = 0;

@@ -31,6 +31,13 @@ class HintMetric final : public Hint {
                          .min = "0 s",
                          .max = "3600 s",
                          .doc = "time of the exercise before which nothing is judged"}};
+  Param<Scalar> margin{this,
+                       {.name = "margin",
+                        .fallback = "0",
+                        .min = "0",
+                        .max = "100",
+                        .doc = "widths of the band beyond its edge that are still well; bands of few sessions, or of "
+                               "scripted hands, are narrow"}};
 
   void prepare(PrepareContext& context) override {
     try {
@@ -48,6 +55,7 @@ class HintMetric final : public Hint {
     last_ = {};
     due_s_ = 0;
   }
+  bool urgent() const override { return false; }
   std::string watched() const override { return metric() + (of.is("both") ? "" : " " + of()); }
   std::string worded(double value) const override { return found_ ? found_->displayed().text(value) : std::string(); }
 
@@ -86,11 +94,12 @@ class HintMetric final : public Hint {
     const int hand = of.is("left") ? left_hand : of.is("right") ? right_hand : both_hands;
     const double scale = found_->displayed().scale(), value = found_->value(0, hand) * scale;
     const Better better = found_->spec().better;
-    const double high = 1 + (value - band_.high) / band_width(band_), low = 1 + (band_.low - value) / band_width(band_);
+    const double width = band_width(band_), top = band_.high + margin() * width, bottom = band_.low - margin() * width;
+    const double high = 1 + (value - top) / width, low = 1 + (bottom - value) / width;
     const bool above = better == Better::low || (better == Better::none && high >= low);
     out.share = above ? high : low;
     out.value = value / scale;
-    out.limit = (above ? band_.high : band_.low) / scale;
+    out.limit = (above ? top : bottom) / scale;
     out.hand = hand == both_hands ? -1 : hand;
     return out;
   }

@@ -50,6 +50,7 @@ class Tutor final : public ExerciseRule, public GivesCues {
     if (chosen < 0) return;
     const Hint& of = *hints_[std::size_t(chosen)];
     cues_.push_back({cause(std::size_t(chosen)), report.time});
+    cues_.back().cause.away = of.direction(report);
     given.set(double(cues_.size()));
     log.events.emit({hint.name(), of.id, of.text(), of.now().share, report.time, of.hand()});
   }
@@ -106,4 +107,5 @@ INSULA_PLUGIN(hints) {
   registry.add<Tutor>("tutor", Kind::exercise_rule, "gives the cues of the hints of its exercise, one at a time");
   register_limit_hints(registry);
   register_hint_metric(registry);
+  register_hint_approach(registry);
 }

@@ -5,13 +5,40 @@
 #include "core/base/text.h"
 #include "core/sim/watched_limit.h"
 #include "plugins/exercise_rules/channel_rules.h"
+#include "plugins/hints/foresight.h"
 #include "plugins/hints/hint.h"
 #include "plugins/hints/register.h"
 
 namespace insula {
 namespace {
 
-class HintChannel final : public Hint {
+class LimitHint : public Hint {
+ public:
+  Param<Duration> ahead{this,
+                        {.name = "ahead",
+                         .fallback = "0 s",
+                         .min = "0 s",
+                         .max = "2 s",
+                         .doc = "for how long the value is carried on at its present rate, for what rises fast"}};
+
+  void reset() override {
+    Hint::reset();
+    foresight_.clear();
+  }
+
+ protected:
+  /// Share of the limit, now or as foreseen, whichever is worse.
+  double share(const StepReport& report, std::size_t which, double value, double limit, bool above) {
+    if (which >= foresight_.size()) foresight_.resize(which + 1);
+    const double later = foresight_[which].carried_on(value, ahead(), report.h);
+    return std::max(share_of_limit(value, limit, above), share_of_limit(later, limit, above));
+  }
+
+ private:
+  std::vector<Foresight> foresight_;
+};
+
+class HintChannel final : public LimitHint {
  public:
   Param<std::string> channel{this, {.name = "channel", .doc = "component and channel: \"arachnoid.tension\""}};
   Param<Choice> comparison{this,
@@ -35,7 +62,7 @@ class HintChannel final : public Hint {
     HintReading out;
     out.value = watch_.value(report);
     out.limit = watch_.limit();
-    out.share = share_of_limit(out.value, out.limit, comparison.is("above"));
+    out.share = share(report, 0, out.value, out.limit, comparison.is("above"));
     return out;
   }
 
@@ -43,7 +70,7 @@ class HintChannel final : public Hint {
   ChannelWatch watch_;
 };
 
-class HintRule final : public Hint {
+class HintRule final : public LimitHint {
  public:
   Param<std::string> rule{this, {.name = "rule", .doc = "id of the rule of the exercise that it guards"}};
 
@@ -74,15 +101,15 @@ class HintRule final : public Hint {
                : known.empty() ? ""
                                : " (it has " + joined(known) + ")"));
   }
-  HintReading read(const StepReport&) override {
+  HintReading read(const StepReport& report) override {
     if (limits_.empty()) limits_ = guarded_->watched_limits();
     HintReading worst;
     if (!guarded_->watches_now()) return worst;
     for (std::size_t i = 0; i < limits_.size(); ++i) {
       const WatchedLimit& l = limits_[i];
-      const double value = *l.channel->values(l.item), share = share_of_limit(value, l.limit, l.above);
-      if (std::isnan(share) || share <= worst.share) continue;
-      worst = {share, value, l.limit, l.hand, i};
+      const double value = *l.channel->values(l.item), near = share(report, i, value, l.limit, l.above);
+      if (std::isnan(near) || near <= worst.share) continue;
+      worst = {near, value, l.limit, l.hand, i, Vec3::Zero()};
     }
     return worst;
   }

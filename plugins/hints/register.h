@@ -7,5 +7,6 @@ namespace insula {
 
 void register_limit_hints(Registry& registry);
 void register_hint_metric(Registry& registry);
+void register_hint_approach(Registry& registry);
 
 }  // namespace insula

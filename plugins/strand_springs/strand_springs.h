@@ -127,6 +127,8 @@ class StrandSprings : public Constraint, public StrandSet, public StatesLaw {
   int strand_count() const override { return count(); }
   StrandState strand(int i) const override;
   bool severed(int i) const override { return strands_[std::size_t(i)].severed; }
+  const ChannelBase* tension_channel() const override { return &tension; }
+  double tearing_tension() const override { return strength(); }
   /// Where a strand begins and ends.
   const MaterialPoint& beginning(int i) const { return strands_[std::size_t(i)].a; }
   const MaterialPoint& ending(int i) const { return strands_[std::size_t(i)].b; }

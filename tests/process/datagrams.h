@@ -116,10 +116,10 @@ class MalformedDatagrams {
   }
 
  private:
-  static constexpr std::array<std::string_view, 10> names{
+  static constexpr std::array<std::string_view, 11> names{
       channel::haptic_problem, channel::device_state, channel::haptic_status, channel::render_frame,
       channel::scene_info,     channel::sim_event,    channel::user_command,  channel::hand_input,
-      channel::metrics,        channel::servo_ticks};
+      channel::metrics,        channel::servo_ticks,  channel::soft_guide};
 
   std::size_t below(std::size_t n) { return random_() % n; }
   std::uint32_t number() {

@@ -85,6 +85,7 @@ const link = new Connection(socketUrl(location.href, options.role), {
     if (m.kind === 'reset' && !ownReset.met(performance.now())) letHandsGo();
     sound.event(m, performance.now());
     hud.showEvent(m, performance.now());
+    lessons.hear(m);
   },
   metrics: (m) => {
     const values = m.session.toString() === world?.bundle.session ? parseMetrics(m.json) : null;
@@ -162,7 +163,7 @@ const modes: ViewModes = new ViewModes(options, headset, {
   refuse: (why) => hud.refuse(why, performance.now()),
 });
 
-const lessons = new Lessons({ hud, canvas, scene, scope, sound, mayDrive });
+const lessons = new Lessons({ hud, canvas, scene, scope, sound, mayDrive, run });
 const toolPose = (hand: number) => {
   const t = playback.latest && world ? toolInHand(playback.latest, world.bundle, hand) : null;
   return t ? { p: vector(t.p_m), q: quaternion(t.q) } : null;

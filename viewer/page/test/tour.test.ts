@@ -13,7 +13,7 @@ const still = (): Seen => ({
     { tool: 'suction', p: new THREE.Vector3(), button: false },
     { tool: 'applier', p: new THREE.Vector3(), button: false },
   ],
-  loaded: 'clip',
+  loads: 2,
 });
 
 const does: Record<string, (s: Seen) => void> = {
@@ -23,7 +23,7 @@ const does: Record<string, (s: Seen) => void> = {
   left_hand: (s) => s.hands[0]!.p!.set(0, 0.01, 0),
   button: (s) => (s.hands[1]!.button = true),
   exchange: (s) => (s.hands[0]!.tool = 'dissector'),
-  choose: (s) => (s.loaded = 'other_clip'),
+  choose: (s) => (s.loads = 3),
 };
 
 const tool = { id: 'a' };

@@ -17,9 +17,14 @@ describe('what the tutor says', () => {
     expect(tutor.cues[0]!.timeS).toBe(12.5);
   });
 
+  it('says which hand a soft force draws', () => {
+    expect(parseTutor({ soft_guide: true, guided: 'left' })).toMatchObject({ softGuide: true, guided: 0 });
+    expect(parseTutor({ soft_guide: 'yes', guided: 2 })).toMatchObject({ softGuide: false, guided: -1 });
+  });
+
   it('may be missing or anything', () => {
     for (const v of [undefined, null, 7, [], { cue: 3, causes: 'x', cues: [null, { text: 5 }] }])
-      expect(parseTutor(v)).toEqual({ cue: null, causes: [], cues: [] });
+      expect(parseTutor(v)).toEqual({ cue: null, causes: [], cues: [], softGuide: false, guided: -1 });
     expect(parseTutor({ cue: { text: 'T', hand: 'third', share: 'much' } }).cue).toMatchObject({ hand: -1, share: 0 });
   });
 });

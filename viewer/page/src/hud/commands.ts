@@ -21,6 +21,8 @@ export const exchange = (hand: 'left' | 'right', tool: string): UserCommand => (
   argument: words(hand, tool),
 });
 
+export const softGuide = (on: boolean): UserCommand => ({ command: 'soft_guide', argument: on ? 'on' : 'off' });
+
 export const ask = (id: string, command: string, argument = ''): UserCommand => ({
   command: 'ask',
   argument: words(id, command, argument),

@@ -14,6 +14,8 @@ export const engineTexts = (): string[] => [
   text('end'),
   text('mode'),
   text('reset'),
+  text('soft guide'),
+  text('A test gives no soft force'),
   text('reopened'),
   text('complication'),
   text('Exercise complete'),

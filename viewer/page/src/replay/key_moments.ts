@@ -13,7 +13,17 @@ export interface KeyMoment {
 }
 
 /** What is asked for, said or chosen, and not seen in the field. */
-const unseen = new Set(['command', 'refused', 'mode', 'message', 'read', 'reset', 'complication', 'goal_lost']);
+const unseen = new Set([
+  'command',
+  'refused',
+  'mode',
+  'message',
+  'read',
+  'reset',
+  'complication',
+  'goal_lost',
+  'soft_guide',
+]);
 const mostEvents = 7;
 
 function largest(series: Series): { timeS: number; value: number } | null {

@@ -13,20 +13,23 @@ export class CueLine {
   private readonly who = el('b');
   private readonly words = el('span');
   private readonly why = el('small');
+  private readonly force = el('small', { class: 'force' });
 
   constructor() {
-    this.root.append(this.who, this.words, this.why);
+    this.root.append(this.who, this.words, this.why, this.force);
     this.root.hidden = true;
   }
 
-  /** null: nothing is said. */
-  show(cue: HintView | null): void {
+  /** null: nothing is said. guided: the hand that a soft force draws, -1: none. */
+  show(cue: HintView | null, guided = -1): void {
     this.root.hidden = cue === null;
     if (!cue) return;
     const hands = [text('Left hand'), text('Right hand')];
     setText(this.who, hands[cue.hand] ?? text('Hint'));
     setText(this.words, cue.text);
     setText(this.why, whyText(cue));
+    this.force.hidden = guided < 0;
+    setText(this.force, guided < 0 ? '' : text('A soft force draws the hand away'));
     this.root.dataset.hint = cue.id;
   }
 }

@@ -27,14 +27,20 @@ export interface TutorView {
   causes: HintView[];
   /** All cues, once the exercise has ended. */
   cues: HintView[];
+  /** Whether each hint is also a soft force at the hand, as the trainee chose. */
+  softGuide: boolean;
+  /** The hand that a soft force draws now: 0 left, 1 right; -1: none. */
+  guided: number;
 }
+
+const handOf = (v: unknown): number => (v === 'left' ? 0 : v === 'right' ? 1 : -1);
 
 function hint(v: unknown): HintView | null {
   if (!isObject(v) || word(v.text) === '') return null;
   return {
     id: word(v.id),
     text: word(v.text),
-    hand: v.hand === 'left' ? 0 : v.hand === 'right' ? 1 : -1,
+    hand: handOf(v.hand),
     watched: word(v.watched),
     value: word(v.value),
     limit: word(v.limit),
@@ -48,5 +54,11 @@ const hints = (v: unknown): HintView[] => (Array.isArray(v) ? v.map(hint).filter
 
 export function parseTutor(v: unknown): TutorView {
   const t = isObject(v) ? v : {};
-  return { cue: hint(t.cue), causes: hints(t.causes), cues: hints(t.cues) };
+  return {
+    cue: hint(t.cue),
+    causes: hints(t.causes),
+    cues: hints(t.cues),
+    softGuide: t.soft_guide === true,
+    guided: handOf(t.guided),
+  };
 }

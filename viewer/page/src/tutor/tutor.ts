@@ -44,7 +44,9 @@ export class TutorCues {
     this.shown = cue && frame && isFresh(cue, frame.sim_time_s) ? cue : null;
     if (this.shown && this.shown.timeS !== this.lastTimeS) this.sound(nowMs);
     this.lastTimeS = this.shown?.timeS ?? -1;
-    this.line.show(this.choice.words ? this.shown : null);
+    // A force is always said, also to who wants no words.
+    const guided = this.shown ? (tutor?.guided ?? -1) : -1;
+    this.line.show(this.choice.words || guided >= 0 ? this.shown : null, guided);
     const hand = this.choice.arrow ? (this.shown?.hand ?? -1) : -1;
     const tool = hand >= 0 && frame && bundle ? toolInHand(frame, bundle, hand) : null;
     this.arrow.update(tool ? vector(tool.p_m) : null, sight, nowMs / 1000);

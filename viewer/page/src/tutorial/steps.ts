@@ -3,7 +3,7 @@
 // It ends when that has changed, whoever did it: a haptic device, a mouse or keys.
 import * as THREE from 'three';
 import type { Bundle } from '../bundle_types';
-import { toolInHand, toolState } from '../hand_tool';
+import { toolInHand } from '../hand_tool';
 import { toolCommands } from '../hud/commands';
 import { text } from '../languages/text';
 import type { RenderFrame } from '../lcm';
@@ -14,8 +14,8 @@ export interface Seen {
   distanceM: number;
   sight: THREE.Vector3;
   hands: HandSeen[];
-  /** What the scene's first instrument with a drop-down holds; '': nothing. */
-  loaded: string;
+  /** How often a clip has come from the tray into an applier, by the events of the engine. */
+  loads: number;
 }
 
 interface HandSeen {
@@ -95,7 +95,7 @@ export const steps: readonly Step[] = [
     title: () => text('Choose a clip from the list'),
     how: () => text('Press L, or click the name of the clip, and choose another one with the arrow keys and Enter.'),
     possible: (bundle) => (toolCommands(bundle)[0]?.tools.length ?? 0) > 1,
-    done: (start, now) => now.loaded !== '' && now.loaded !== start.loaded,
+    done: (start, now) => now.loads > start.loads,
   },
 ];
 
@@ -103,6 +103,7 @@ export function see(
   frame: RenderFrame,
   bundle: Bundle,
   scope: { distance: number; axes(): { z: THREE.Vector3 } },
+  loads: number,
 ): Seen {
   const hands = [0, 1].map((hand) => {
     const tool = toolInHand(frame, bundle, hand);
@@ -112,7 +113,5 @@ export function see(
       button: tool !== null && tool !== undefined && tool.button1 !== 0,
     };
   });
-  const offered = toolCommands(bundle)[0]?.tools ?? [];
-  const held = offered.find((t) => frame.tool.find((f) => f.index === t.index)?.state === toolState.inHand);
-  return { distanceM: scope.distance, sight: scope.axes().z.clone(), hands, loaded: held?.id ?? '' };
+  return { distanceM: scope.distance, sight: scope.axes().z.clone(), hands, loads };
 }

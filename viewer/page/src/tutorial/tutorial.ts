@@ -3,7 +3,7 @@
 import type { Microscope } from '../camera';
 import { browserStore } from '../browser_store';
 import type { Bundle } from '../bundle_types';
-import type { RenderFrame } from '../lcm';
+import type { RenderFrame, SimEvent } from '../lcm';
 import { see } from './steps';
 import { Tour } from './tour';
 import { TourPanel } from './tour_panel';
@@ -12,6 +12,7 @@ export class Tutorial {
   readonly tour = new Tour(browserStore());
   readonly panel: TourPanel;
   private bundle: Bundle | null = null;
+  private loads = 0;
 
   constructor(
     private readonly scope: Microscope,
@@ -25,9 +26,16 @@ export class Tutorial {
     this.tour.begin(bundle);
   }
 
+  hear(e: Pick<SimEvent, 'kind'>): void {
+    if (e.kind === 'clip_loaded') this.loads++;
+  }
+
   /** practises: hands may be moved, and nothing is judged. */
   update(frame: RenderFrame | null, practises: boolean, nowMs: number): void {
-    if (frame && this.bundle && this.tour.see(see(frame, this.bundle, this.scope))) this.panel.praise(nowMs);
+    if (frame && this.bundle) {
+      const now = see(frame, this.bundle, this.scope, this.loads);
+      if (this.tour.see(now)) this.panel.praise(nowMs);
+    }
     this.panel.show(practises && frame !== null, nowMs);
     this.panel.button.hidden = !practises;
   }
