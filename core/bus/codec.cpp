@@ -7,7 +7,7 @@
 namespace insula {
 namespace {
 
-constexpr std::size_t size_i8 = 1, size_i32 = 4, size_i64 = 8, size_f32 = 4, size_f64 = 8;
+constexpr std::size_t size_i8 = 1, size_i16 = 2, size_i32 = 4, size_i64 = 8, size_f32 = 4, size_f64 = 8;
 
 template <class Message>
 bool starts_as(ByteReader& in, const Message*) {
@@ -97,7 +97,7 @@ bool well_formed(const insula_lcm::render_frame_t* type, Bytes bytes) {
   const int tools = in.i8();
   in.take_array(tools, render_tool_bytes);
   const int contacts = in.i32();
-  in.take_array(contacts, 4 * size_f32);  // position, force
+  in.take_array(contacts, 4 * size_f32 + 2 * size_i16);  // position, force, both sides
   in.take(2 * size_f64 + 2 * size_i32);
   in.take_array(bodies, size_f64);
   in.skip_string();
@@ -169,6 +169,7 @@ void drop_stale(insula_lcm::render_frame_t& m) {
   if (m.contacts == 0) {
     m.contact_x_m.clear();
     m.contact_N.clear();
+    m.contact_side.clear();
   }
 }
 

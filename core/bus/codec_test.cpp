@@ -103,6 +103,7 @@ insula_lcm::render_frame_t sample() {
   m.contacts = 1;
   m.contact_x_m = {{0.f, 0.f, 0.1f}};
   m.contact_N = {0.3f};
+  m.contact_side = {{2, -1}};
   m.step_ms = 5;
   m.step_period_ms = 16.7;
   m.hud_json = R"({"goals":[],"state":"running"})";
@@ -333,6 +334,7 @@ TEST(Plausible, RenderFrame) {
   });
   expect_refused<T>("tool", [](T& m) { m.tool[0].activity = 2; });
   expect_refused<T>("contact", [](T& m) { m.contact_N[0] = INFINITY; });
+  expect_refused<T>("side", [](T& m) { m.contact_side[0][1] = -2; });
 }
 
 TEST(Plausible, Others) {
@@ -378,6 +380,7 @@ TEST(Codec, EmptyFrameIntoAUsedObject) {
   ASSERT_TRUE(decode(encoded(empty), used, why)) << why;
   EXPECT_TRUE(used.drawable.empty());
   EXPECT_TRUE(used.contact_x_m.empty());
+  EXPECT_TRUE(used.contact_side.empty());
 }
 
 }  // namespace

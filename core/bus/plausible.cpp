@@ -137,6 +137,8 @@ bool plausible(const insula_lcm::render_frame_t& m, std::string& why) {
   for (const auto& x : m.contact_x_m)
     if (!within(x.data(), 3, limits::position_m)) return fail(why, "contact position out of range");
   if (!within(m.contact_N.data(), m.contacts, limits::force_N)) return fail(why, "contact force out of range");
+  for (const auto& sides : m.contact_side)
+    if (sides[0] < -1 || sides[1] < -1) return fail(why, "contact of a negative side");
   if (!non_negative(m.step_ms, 1e6) || !non_negative(m.step_period_ms, 1e6)) return fail(why, "step time out of range");
   if (m.rows < 0 || m.sweeps < 0) return fail(why, "negative count");
   if (!within(m.body_force_N.data(), m.bodies, limits::force_N)) return fail(why, "body force out of range");
@@ -257,7 +259,9 @@ bool consistent(const insula_lcm::render_frame_t& m) {
     if (d.floats < 0 || d.data.size() != std::size_t(d.floats)) return false;
   return m.channel.size() == std::size_t(m.channels) && m.drawable.size() == std::size_t(m.drawables) &&
          m.tool.size() == std::size_t(m.tools) && m.contact_x_m.size() == std::size_t(m.contacts) &&
-         all_triples(m.contact_x_m) && m.contact_N.size() == std::size_t(m.contacts);
+         all_triples(m.contact_x_m) && m.contact_N.size() == std::size_t(m.contacts) &&
+         m.contact_side.size() == std::size_t(m.contacts) &&
+         std::all_of(m.contact_side.begin(), m.contact_side.end(), [](const auto& x) { return x.size() == 2; });
 }
 
 }  // namespace insula

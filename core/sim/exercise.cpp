@@ -232,6 +232,8 @@ void Exercise::add_measures(const Simulation& simulation) {
 void Exercise::observe(const StepReport& report) {
   ran_ = log_.state() == ExerciseState::running;
   for (ExerciseRule* r : rules_) r->observe(report, log_);
+  // An exercise that an instructor reopens in this step is measured again at once.
+  if (!ran_ && log_.state() != ExerciseState::running) return;
   for (const Measured& m : measured_) {
     const ChannelBase& c = *m.entry->channel;
     const double si = *c.values(m.entry->item);

@@ -42,7 +42,7 @@ struct TimerState {
   double longest = 0;  ///< largest elapsed so far, s
 };
 
-/// The present value of a measure: neck remnant, narrowing of a branch, ...
+/// The value of a measure, now or at the exercise's end: neck remnant, narrowing of a branch, ...
 struct MeasureState {
   std::string id, text, unit;
   bool known = false;  ///< has a value
@@ -160,7 +160,7 @@ class Exercise final : public Component {
                          .doc = "from 1, for a first case, to 5, for an expert; 0: not said. Pages sort cases by it"}};
 
   void connect(PrepareContext& context, const Simulation& simulation);
-  /// After each step: the rules.
+  /// After each step: the rules. The measures are then those of the step; once the exercise has ended they stand still.
   void observe(const StepReport& report);
   /// After observe(), when the report has the channels that the rules have set: the metrics.
   void observe_metrics(const StepReport& report);

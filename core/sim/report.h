@@ -16,12 +16,20 @@ class Body;
 class ChannelTable;
 class Component;
 class Instrument;
+class Surface;
 
 enum Stage { stage_free_motion, stage_collision, stage_build, stage_solve, stage_correct, stage_publish, stage_count };
+
+/// The part of a body that touches.
+struct ContactPart {
+  const Surface* surface = nullptr;  ///< of the body; null: of a rigid body, its own pieces
+  int link = 0;                      ///< of a rigid body, whose pieces touch
+};
 
 struct ContactPoint {
   const Body* a = nullptr;  ///< pushed along +normal
   const Body* b = nullptr;  ///< pushed along -normal
+  ContactPart part_a, part_b;
   Vec3 position = Vec3::Zero();
   Vec3 normal = Vec3::Zero();
   double gap = 0;                     ///< start of step, m

@@ -15,6 +15,7 @@
 #include "engine/authoring/inventory.h"
 #include "engine/live/bundle_step_data.h"
 #include "engine/live/bundle_writer.h"
+#include "engine/live/contact_sides.h"
 #include "engine/live/frame.h"
 #include "engine/live/motion_guide.h"
 
@@ -316,6 +317,7 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
   const auto tools = picture_tools(simulation);
   for (std::size_t i = 0; i < tools.size(); ++i) json["tools"].push_back(tool_json(writer, *tools[i], i));
   json["hands"] = hands_json(simulation);
+  json["contact_sides"] = contact_sides_json(simulation);
   json["commands"] = commands_json(simulation.scene());
   json["channels"] = channels_json(simulation.channels());
   json["drawables"] = drawables_json(writer, simulation);

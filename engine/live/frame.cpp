@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/mechanics/deformable_body.h"
+#include "engine/live/contact_sides.h"
 #include "engine/live/hud.h"
 
 namespace insula {
@@ -114,9 +115,13 @@ void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& f, con
   f.contacts = std::int32_t(contacts);
   f.contact_x_m.resize(contacts);
   f.contact_N.resize(contacts);
+  f.contact_side.resize(contacts);
+  const ContactSides sides(simulation);
   for (std::size_t i = 0; i < contacts; ++i) {
-    put(f.contact_x_m, i, r.contacts[i].position);
-    f.contact_N[i] = float(r.contacts[i].normal_force);
+    const ContactPoint& c = r.contacts[i];
+    put(f.contact_x_m, i, c.position);
+    f.contact_N[i] = float(c.normal_force);
+    f.contact_side[i] = {sides.number(*c.a, c.part_a), sides.number(*c.b, c.part_b)};
   }
   f.step_ms = r.step_ms;
   f.step_period_ms = simulation.h() * 1000;

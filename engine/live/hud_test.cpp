@@ -218,6 +218,7 @@ TEST(Frame, StaysUnderWhatOneMessageCarries) {
   f.contacts = 120;
   f.contact_x_m.assign(120, std::vector<float>(3, 0.f));
   f.contact_N.assign(120, 0.f);
+  f.contact_side.assign(120, std::vector<std::int16_t>(2, 0));
   std::vector<std::uint8_t> bytes;
   ASSERT_TRUE(encode(f, bytes));
   EXPECT_LT(bytes.size(), 120'000u);

@@ -245,6 +245,8 @@ void Contact::report(StepReport& out) const {
       ContactPoint c;
       c.a = x.side == 0 ? p.body_a() : p.body_b();
       c.b = x.side == 0 ? p.body_b() : p.body_a();
+      c.part_a = x.side == 0 ? p.part_a() : p.part_b();
+      c.part_b = x.side == 0 ? p.part_b() : p.part_a();
       c.position = x.point;
       c.normal = x.normal;
       c.gap = x.start_gap;

@@ -187,6 +187,8 @@ class Contact final : public Constraint, public StatesLaw {
     }
     const Body* body_a() const { return tool_a ? static_cast<const Body*>(tool_a) : &a->body(); }
     const Body* body_b() const { return tool_b ? static_cast<const Body*>(tool_b) : &b->body(); }
+    ContactPart part_a() const { return {a, link_a}; }
+    ContactPart part_b() const { return {b, link_b}; }
   };
   const std::vector<Pair>& pairs() const { return pairs_; }
 

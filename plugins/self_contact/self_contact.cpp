@@ -164,6 +164,7 @@ void SelfContact::report(StepReport& out) const {
   for (const Support& s : supports_) {
     ContactPoint c;
     c.a = c.b = &on->body();
+    c.part_a = c.part_b = {&*on, 0};
     c.position = on->collision().point(s.behind, s.behind_bary);
     c.normal = s.normal;
     c.gap = s.gap;
@@ -175,6 +176,7 @@ void SelfContact::report(StepReport& out) const {
     const Proximity& x = contacts_[i];
     ContactPoint c;
     c.a = c.b = &on->body();
+    c.part_a = c.part_b = {&*on, 0};
     c.position = x.point;
     c.normal = x.normal;
     c.gap = x.start_gap;

@@ -182,6 +182,7 @@ TEST(StrandSprings, ResistsWithCutForceAndPartsAfterCutLength) {
       severed_at = n;
       ASSERT_EQ(t.s->events().size(), 1u);
       EXPECT_EQ(t.s->events()[0].kind, "strand_cut");
+      EXPECT_EQ(t.s->events()[0].hand, 1) << "whose edge did it";
       EXPECT_EQ(t.strands->strands_left(), 0);
     } else {
       EXPECT_EQ(t.strands->strands_left(), 1);
@@ -204,6 +205,7 @@ TEST(StrandSprings, ABladeThatIsOnItsPathCutsNothingYet) {
   EXPECT_NEAR(t.s->problem().delta_free[1], -0.00015, 1e-9) << "0.35 mm off, 0.2 mm of reach";
   ASSERT_EQ(t.s->events().size(), 1u);
   EXPECT_EQ(t.s->events()[0].kind, "strand_torn");
+  EXPECT_EQ(t.s->events()[0].hand, -1) << "nobody's edge";
 }
 
 TEST(StrandSprings, BluntOrWithoutTheButtonDoesNotCut) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads the scene bundle (docs/scene-bundle.md): scene.json and its binary files, sizes and indices checked.
 import type * as types from './bundle_types';
+import { parseContactSides } from './contact_sides';
 import { parseInventory } from './inventory';
 import { parseChannels, parseDrawables, parseMaterials } from './step_data/declarations';
 import { said } from './languages/said';
@@ -91,6 +92,7 @@ export async function loadBundle(source: BundleSource, session: string): Promise
     bodies: await Promise.all(list(json.bodies).map((b) => bodyOf(files, b))),
     tools,
     hands: handsOf(json, tools),
+    contactSides: parseContactSides(json.contact_sides),
     commands: commandsOf(json),
     channels: parseChannels(json.channels),
     drawables: await drawablesOf(files, json),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A scene as the page has it: what load_bundle made of scene.json and its files (docs/scene-bundle.md).
+import type { ContactSide } from './contact_sides';
 import type { InventoryItem } from './inventory';
 import type { ChannelData, DrawableData, MaterialData, Rgba } from './step_data/declarations';
 
@@ -154,6 +155,7 @@ export interface Bundle {
   static: SurfaceData[];
   tools: ToolData[];
   hands: HandData[];
+  contactSides: ContactSide[];
   commands: CommandGroup[];
   channels: ChannelData[];
   drawables: LoadedDrawable[];

@@ -12,6 +12,11 @@ const param = () => ({
 
 export class FakeAudio {
   currentTime = 0;
+  readonly baseLatency = 0.005;
+  readonly outputLatency = 0.01;
+  /** What getOutputTimestamp() says. */
+  output = { contextTime: 0, performanceTime: 0 };
+  readonly getOutputTimestamp = () => this.output;
   readonly sampleRate = 8000;
   /** When each source was started. */
   readonly starts: number[] = [];

@@ -56,7 +56,6 @@ describe('the Doppler probe', () => {
     // The noise and its unevenness.
     expect(audio.starts).toEqual([0, 0]);
     expect(report.by_voice.doppler).toBe(1);
-    expect(report.latest_ms_max).toBeLessThan(20);
     desk.insonate(null, 0);
     expect(audio.ends).toBe(2);
   });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs in the page: renders each voice through the mixer at full volume, without a sound card, and measures it.
+import { makeRandom } from '../src/random';
 import { Mixer } from '../src/sound/mixer';
 import { AlarmVoice } from '../src/sound/voices/alarm';
 import { BleedingVoice } from '../src/sound/voices/bleeding';
@@ -8,13 +9,19 @@ import { hit } from '../src/sound/voices/contact';
 import { DopplerVoice } from '../src/sound/voices/doppler';
 import { drip } from '../src/sound/voices/drop';
 import { beep } from '../src/sound/voices/heart';
+import { hint } from '../src/sound/voices/hint';
 import { part } from '../src/sound/voices/strand';
 import { SuctionVoice } from '../src/sound/voices/suction';
-import { centroid, lastLoud, onsets, peak, rms, spectrum, strongest } from './sound_measures.mjs';
+import * as measures from './sound_measures.mjs';
+
+const { centroid, lastLoud, onsets, peak, rms, spectrum, strongest } = measures;
+
+// The same noise in each run, so that the measures are the same.
+Math.random = makeRandom(11);
 
 const rate = 48000;
 const mmHg = 133.322;
-const on = { monitor: true, instruments: true, doppler: true, alarms: true };
+const on = { monitor: true, instruments: true, doppler: true, alarms: true, hints: true };
 
 async function render(seconds, play, groups = on) {
   const context = new OfflineAudioContext(1, seconds * rate, rate);
@@ -25,13 +32,21 @@ async function render(seconds, play, groups = on) {
 }
 
 /** From when it began, s, to its end. */
-function measure(x, fromS, windowS) {
+function measure(x, fromS, windowS, { more = [], window = measures.hann } = {}) {
   const begin = Math.floor(fromS * rate);
   const heard = x.subarray(begin, begin + Math.round(windowS * rate));
   let n = 1024;
   while (2 * n <= heard.length) n *= 2;
-  const power = spectrum(heard, n);
+  const power = spectrum(heard, n, window);
+  // Noise differs each time, so its spectrum is the mean of some.
+  for (const other of more) spectrum(other.subarray(begin), n, window).forEach((p, k) => (power[k] += p));
+  const levels = [x, ...more].map((y) => measures.envelope(y.subarray(begin), rate));
+  const mean = levels[0].map((_, k) => Math.sqrt(levels.reduce((s, l) => s + l[k] ** 2, 0) / levels.length));
+  const [attack, decay] = measures.attackAndDecay(mean);
+  const band = measures.band(power, rate);
   return {
+    ...{ attack_ms: attack, decay_ms: decay, band_hz: band, densest_hz: measures.densest(power, rate) },
+    ...{ level_db: measures.level([x, ...more], rate), offset: measures.offset(x), edges: measures.edges(x) },
     peak: peak(x),
     rms: rms(heard),
     centroid_hz: centroid(power, rate),
@@ -46,22 +61,18 @@ function measure(x, fromS, windowS) {
 /** Gains glide at first; so every sound begins a little later. */
 const at = 0.2;
 
-const suck = (drawn) => async () => {
-  const x = await render(2, (place) => {
-    const voice = new SuctionVoice(place('instruments'));
-    // The lease is made longer for a second, as frames would do.
-    voice.play(drawn, at);
-  });
-  return measure(x, at + 0.1, 0.35);
+/** Some renderings of what lasts, from a tenth of a second after its begin; the noise begins elsewhere each time. */
+const hold = (group, play) => async () => {
+  const once = () => render(2, (place) => play(place(group)));
+  const more = [];
+  for (let k = 0; k < 11; k++) more.push(await once());
+  return measure(await once(), at + 0.1, 0.35, { more });
 };
 
-const insonate =
-  (shiftHz, depthM = 0.002) =>
-  async () => {
-    const flow = { shiftHz, depthM, mixed: false };
-    const x = await render(2, (place) => new DopplerVoice(place('doppler')).play(flow, at));
-    return measure(x, at + 0.1, 0.35);
-  };
+const suck = (drawn) => hold('instruments', (p) => new SuctionVoice(p).play(drawn, at));
+
+const insonate = (shiftHz, depthM = 0.002) =>
+  hold('doppler', (p) => new DopplerVoice(p).play({ shiftHz, depthM, mixed: false }, at));
 
 /** Of the left and the right side, how loud it is. */
 const sides = (shiftHz, mixed) => async () => {
@@ -76,19 +87,25 @@ const sides = (shiftHz, mixed) => async () => {
 /** What is no single voice. */
 export const placed = { away: sides(-2000, false), nearer: sides(2000, false), both: sides(2000, true) };
 
-const strike = (group, windowS, play) => async () =>
-  measure(await render(1.5, (place) => play(place(group))), at, windowS);
+const strike = (group, windowS, play) => async () => {
+  const once = () => render(1.5, (place) => play(place(group)));
+  const more = [];
+  for (let k = 0; k < 11; k++) more.push(await once());
+  return measure(await once(), at, windowS, { more, window: measures.whole });
+};
 
 const alarm = (priority) => async () => {
   const x = await render(4, (place) => void new AlarmVoice(place('alarms')).sound(priority, at));
-  return measure(x, at + 0.02, 0.1);
+  return measure(x, at, 0.14);
 };
 
 export const cases = {
-  cut: strike('instruments', 0.25, (p) => part(p, at, 'cut', 0)),
-  torn: strike('instruments', 0.25, (p) => part(p, at, 'torn', 0)),
-  vein: strike('instruments', 0.4, (p) => part(p, at, 'vein', 0)),
-  artery: strike('instruments', 0.4, (p) => part(p, at, 'artery', 0)),
+  cut: strike('instruments', 0.25, (p) => part(p, at, { what: 'strand', by: 'cut' }, 0)),
+  torn: strike('instruments', 0.25, (p) => part(p, at, { what: 'strand', by: 'torn' }, 0)),
+  vein_cut: strike('instruments', 0.4, (p) => part(p, at, { what: 'vein', by: 'cut' }, 0)),
+  vein_torn: strike('instruments', 0.4, (p) => part(p, at, { what: 'vein', by: 'torn' }, 0)),
+  artery_cut: strike('instruments', 0.4, (p) => part(p, at, { what: 'artery', by: 'cut' }, 0)),
+  artery_torn: strike('instruments', 0.4, (p) => part(p, at, { what: 'artery', by: 'torn' }, 0)),
   doppler_slow: insonate(500),
   doppler_fast: insonate(-3896),
   doppler_deep: insonate(-3896, 0.005),
@@ -98,7 +115,10 @@ export const cases = {
   loaded: strike('instruments', 0.15, (p) => click(p, at, 'loaded')),
   bone: strike('instruments', 0.1, (p) => hit(p, at, 'bone', 1, 0)),
   bone_gently: strike('instruments', 0.1, (p) => hit(p, at, 'bone', 0.2, 0)),
-  instrument: strike('instruments', 0.1, (p) => hit(p, at, 'instrument', 1, 0)),
+  metal: strike('instruments', 0.1, (p) => hit(p, at, 'metal', 1, 0)),
+  polymer: strike('instruments', 0.1, (p) => hit(p, at, 'polymer', 1, 0)),
+  soft: strike('instruments', 0.1, (p) => hit(p, at, 'soft', 1, 0)),
+  hint: strike('hints', 0.35, (p) => hint(p, at)),
   heart_60: strike('monitor', 0.12, (p) => beep(p, at, 60 * mmHg)),
   heart_90: strike('monitor', 0.12, (p) => beep(p, at, 90 * mmHg)),
   heart_120: strike('monitor', 0.12, (p) => beep(p, at, 120 * mmHg)),
@@ -107,10 +127,7 @@ export const cases = {
   air: suck('air'),
   fluid: suck('fluid'),
   tissue: suck('tissue'),
-  bleeding: async () => {
-    const x = await render(2, (place) => new BleedingVoice(place('instruments')).play(1e-6, at));
-    return measure(x, at + 0.1, 0.35);
-  },
+  bleeding: hold('instruments', (p) => new BleedingVoice(p).play(1e-6, at)),
   low: alarm('low'),
   medium: alarm('medium'),
   high: alarm('high'),
@@ -118,7 +135,7 @@ export const cases = {
   everything: async () => {
     const x = await render(2, (place) => {
       for (let k = 0; k < 30; k++) {
-        part(place('instruments'), at, 'torn', 0);
+        part(place('instruments'), at, { what: 'strand', by: 'torn' }, 0);
         hit(place('instruments'), at, 'bone', 1, 0);
         beep(place('monitor'), at, null);
       }
@@ -131,9 +148,9 @@ export const cases = {
       1,
       (place) => {
         beep(place('monitor'), at, null);
-        part(place('instruments'), at, 'torn', 0);
+        part(place('instruments'), at, { what: 'strand', by: 'torn' }, 0);
       },
-      { monitor: false, instruments: false, doppler: true, alarms: true },
+      { ...on, monitor: false, instruments: false },
     );
     return measure(x, at, 0.2);
   },

@@ -1,26 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs in the page before it: listens to what really leaves its mixer, in the thread of the audio, and notes when each
-// event arrived, both on the clock of the audio. window.__tap has both.
+// Runs in the page before it: listens to what really leaves its mixer, in the thread of the audio. It notes when each
+// message arrived, when each sound was handed to the audio, and when the audio's thread rendered which moment of its
+// own clock. window.__tap has all of it; sound_latency.mjs puts them together.
 
 export function tapSound() {
-  const tap = (window.__tap = { context: null, sounds: [], events: [], peak: 0, samples: 0 });
-  // A sound begins with the first sample above -70 dB after 30 ms of silence.
+  const tap = (window.__tap = {
+    ...{ context: null, sounds: [], events: [], starts: [], blocks: [], peak: 0, quiet: 0 },
+    /** The message whose handlers run. */
+    message: null,
+  });
+  // A sound begins with the first sample above -70 dB after 30 ms of silence. Date.now() is the only clock here that
+  // the page has too; it has whole milliseconds.
   const worklet = `registerProcessor('tap', class extends AudioWorkletProcessor {
-    quiet = 1e9; peak = 0; told = 0;
+    quiet = 1e9; peak = 0; told = 0; blocks = [];
     process([[x]]) {
-      if (!x) return true;
+      const wall = Date.now();
+      if (wall !== this.blocks.at(-1)?.wall) this.blocks.push({ at: currentTime, wall });
+      if (x) this.listen(x, wall);
+      if (currentTime > this.told + 0.1) {
+        this.told = currentTime;
+        this.port.postMessage({ peak: this.peak, quiet: this.quiet / sampleRate, more: this.blocks });
+        this.blocks = [{ at: currentTime, wall }];
+      }
+      return true;
+    }
+    listen(x, wall) {
       for (let i = 0; i < x.length; i++) {
         const size = Math.abs(x[i]);
         this.peak = Math.max(this.peak, size);
         if (size < 0.0003) { this.quiet++; continue; }
-        if (this.quiet > 0.03 * sampleRate) this.port.postMessage({ begins: currentTime + i / sampleRate });
+        if (this.quiet > 0.03 * sampleRate) this.port.postMessage({ begins: currentTime + i / sampleRate, wall });
         this.quiet = 0;
       }
-      if (currentTime > this.told + 0.1) {
-        this.told = currentTime;
-        this.port.postMessage({ peak: this.peak, quiet: this.quiet / sampleRate });
-      }
-      return true;
     }
   });`;
   const connect = AudioNode.prototype.connect;
@@ -30,8 +41,9 @@ export function tapSound() {
       const url = URL.createObjectURL(new Blob([worklet], { type: 'text/javascript' }));
       void this.context.audioWorklet.addModule(url).then(() => {
         const node = new AudioWorkletNode(this.context, 'tap', { numberOfOutputs: 0 });
-        node.port.onmessage = ({ data }) => {
-          if (data.begins !== undefined) tap.sounds.push(data.begins);
+        node.port.onmessage = ({ data: { more = [], ...data } }) => {
+          tap.blocks.push(...more);
+          if (data.begins !== undefined) tap.sounds.push(data);
           else Object.assign(tap, data);
         };
         connect.call(this, node);
@@ -40,6 +52,27 @@ export function tapSound() {
     }
     return connect.call(this, to, ...rest);
   };
+}
+
+/** The second half: when messages arrived, and which sound each began. Runs after tapSound. */
+export function tapMessages() {
+  const tap = window.__tap;
+  for (const source of [OscillatorNode, AudioBufferSourceNode]) {
+    const start = source.prototype.start;
+    source.prototype.start = function (at = 0, ...rest) {
+      if (tap.message && this.context === tap.context)
+        tap.starts.push({ ...tap.message, at, now: this.context.currentTime, handedMs: performance.now() });
+      return start.call(this, at, ...rest);
+    };
+  }
+  /** Channel and the sender's clock, us: every message begins with fingerprint, session, sequence and time. */
+  const header = (data) => {
+    const bytes = new Uint8Array(data);
+    const channel = String.fromCharCode(...bytes.subarray(1, 1 + bytes[0]));
+    const at = 1 + bytes[0] + 24;
+    const sentUs = bytes.length >= at + 8 ? Number(new DataView(data).getBigInt64(at)) : 0;
+    return { channel, sentUs };
+  };
   const Socket = window.WebSocket;
   window.WebSocket = class extends Socket {
     constructor(...all) {
@@ -47,14 +80,15 @@ export function tapSound() {
       // Before the page's own handler.
       this.addEventListener('message', ({ data }) => {
         if (!(data instanceof ArrayBuffer) || !tap.context) return;
-        const bytes = new Uint8Array(data);
-        const channel = String.fromCharCode(...bytes.subarray(1, 1 + bytes[0]));
-        if (channel !== 'SIM_EVENT') return;
-        // The audio's clock goes on in steps; the page's own says where it is between two of them.
-        const { contextTime, performanceTime } = tap.context.getOutputTimestamp();
-        const played = contextTime + (performance.now() - performanceTime) / 1000;
-        tap.events.push({ at: tap.context.currentTime, played });
+        tap.message = { ...header(data), arrivedMs: performance.now() };
+        if (tap.message.channel === 'SIM_EVENT') tap.events.push({ ...tap.message, at: tap.context.currentTime });
       });
+    }
+    set onmessage(handle) {
+      super.onmessage = (e) => {
+        handle.call(this, e);
+        tap.message = null;
+      };
     }
   };
 }

@@ -40,8 +40,8 @@ export class ReplaySound {
     }
     const now = performance.now();
     const { frame } = moment.before;
-    for (const { kind, timeS: atS } of events)
-      if (atS > fromS && atS <= timeS) this.sound.event({ kind, sim_time_s: frame.sim_time_s }, now);
+    for (const { kind, hand, timeS: atS } of events)
+      if (atS > fromS && atS <= timeS) this.sound.event({ kind, hand, sim_time_s: frame.sim_time_s }, now);
     this.sound.clocks(reading.state?.timers ?? []);
     this.sound.frame(frame, now);
   }

@@ -13,6 +13,8 @@ export interface Happening {
   kind: string;
   id: string;
   text: string;
+  /** Whose tool did it: 0 left, 1 right; -1: nobody's. */
+  hand: number;
 }
 
 /** A curve: a value at each time, NaN where it is not known. */
@@ -115,7 +117,7 @@ export class Timeline {
   private addEvent(timeS: number, data: Uint8Array): void {
     try {
       const e = sim_event_t.decode(data);
-      this.events.push({ timeS, kind: e.kind, id: e.id, text: said(e.text) });
+      this.events.push({ timeS, kind: e.kind, id: e.id, text: said(e.text), hand: e.hand });
     } catch {
       // A damaged one is left out.
     }

@@ -8,7 +8,7 @@ import { type ClipSound, type Parting, type Priority, type Voice, voices } from 
 import { AlarmVoice } from './voices/alarm';
 import { BleedingVoice } from './voices/bleeding';
 import { click } from './voices/clip';
-import { hit, type Partner } from './voices/contact';
+import { hit, type Hit } from './voices/contact';
 import { DopplerVoice, type Flow, timbreOf } from './voices/doppler';
 import { beep } from './voices/heart';
 import { hint } from './voices/hint';
@@ -52,8 +52,8 @@ export class Desk {
     this.strike('clip', arrivedMs, (at) => click(this.place('clip'), at, how));
   }
 
-  hit(partner: Partner, strength: number, arrivedMs: number): void {
-    this.strike('contact', arrivedMs, (at) => hit(this.place('contact'), at, partner, strength, vary()));
+  hit(what: Hit, strength: number, arrivedMs: number): void {
+    this.strike('contact', arrivedMs, (at) => hit(this.place('contact'), at, what, strength, vary()));
   }
 
   /** Fluid that comes in at this rate, m3/s, and so many drops now. */
@@ -110,7 +110,7 @@ export class Desk {
       return;
     }
     begin(now);
-    count(this.report, voice, arrivedMs, 0);
+    count(this.report, voice, arrivedMs, now, this.context);
   }
 }
 

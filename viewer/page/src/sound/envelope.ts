@@ -22,7 +22,7 @@ export function dying(
   return { gain, end: top + fallS };
 }
 
-/** White noise from a place in the loop that differs each time. */
+/** White noise in a loop; who starts it draws the place where it begins, so that it differs each time. */
 export function noiseSource({ context, noise }: Place): AudioBufferSourceNode {
   const source = context.createBufferSource();
   source.buffer = noise.white;

@@ -106,7 +106,7 @@ export class HeldNoise {
     wander.connect(depth).connect(unevenness.gain);
     const filtered = filters.reduce<AudioNode>((from, to) => from.connect(to), source);
     filtered.connect(unevenness).connect(level).connect(out);
-    source.start(at);
+    source.start(at, Math.random() * noise.white.duration);
     wander.start(at);
     return { sources: [source, wander], filters, depth, level };
   }

@@ -13,7 +13,7 @@ import { Impacts } from './impacts';
 import { Poisson } from './poisson';
 import { Surroundings } from './surroundings';
 import { channelAlarm, clockAlarm, dopplers, hasLimits, inflowOf, pressureOfPulse } from './table';
-import { type DopplerChannels, type Priority, soundOf } from './table';
+import { type DopplerChannels, partingOf, type Priority, soundOf } from './table';
 import { dropsPerSecond } from './voices/bleeding';
 import type { Flow } from './voices/doppler';
 import { bubbleRate } from './voices/suction';
@@ -22,7 +22,7 @@ import { bubbleRate } from './voices/suction';
 const longestS = 0.2;
 
 /** Of an event. */
-export type Heard = Pick<SimEvent, 'kind' | 'sim_time_s'>;
+export type Heard = Pick<SimEvent, 'kind' | 'sim_time_s' | 'hand'>;
 
 export class Listener {
   private readonly channels: Channels;
@@ -52,11 +52,12 @@ export class Listener {
     this.surroundings = new Surroundings(bundle);
   }
 
-  event({ kind, sim_time_s: timeS }: Heard, desk: Desk, arrivedMs: number): void {
+  event({ kind, sim_time_s: timeS, hand }: Heard, desk: Desk, arrivedMs: number): void {
     if (kind === 'reset') this.restart(desk);
     const sound = soundOf(kind);
     if (!sound) return;
-    if (sound.strand) desk.part(sound.strand, arrivedMs);
+    const parting = partingOf({ kind, hand });
+    if (parting) desk.part(parting, arrivedMs);
     if (sound.clip) desk.click(sound.clip, arrivedMs);
     if (sound.alarm && this.alarms.event(sound.alarm, timeS)) this.warn(sound.alarm, timeS, desk, arrivedMs);
   }
@@ -74,7 +75,7 @@ export class Listener {
     const drawn = this.surroundings.drawn(frame);
     const bubbles = drawn === 'fluid' ? this.bubbles.count(bubbleRate, Math.min(longestS, pastS)) : 0;
     desk.suck(drawn, bubbles, arrivedMs);
-    for (const { partner, strength } of this.impacts.read(frame)) desk.hit(partner, strength, arrivedMs);
+    for (const { what, strength } of this.impacts.read(frame)) desk.hit(what, strength, arrivedMs);
   }
 
   /** Clocks of the exercise: those that run past their limit. */

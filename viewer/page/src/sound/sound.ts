@@ -116,7 +116,6 @@ export class Sound {
   private tell(): void {
     if (this.context) {
       this.report.running = this.context.state === 'running';
-      this.report.device_ms = 1000 * (this.context.baseLatency + (this.context.outputLatency || 0));
     }
     this.changed();
   }

@@ -3,6 +3,7 @@
 // Nothing here names a part of a scene. A plugin that emits one of these kinds, or declares such data, is heard.
 import type { ChannelData, DrawableData, MaterialData } from '../step_data/declarations';
 import { text } from '../languages/text';
+import type { Hit } from './voices/contact';
 
 /** What can be switched on and off by itself. */
 export const groups = ['monitor', 'instruments', 'doppler', 'alarms', 'hints'] as const;
@@ -31,26 +32,30 @@ export const voices: Record<Voice, { group: Group; most: number; withinS: number
   hint: { group: 'hints', most: 1, withinS: 1 },
 };
 
-/** What parts: a strand by an edge or by a pull, or a vessel with its blood. */
-export type Parting = 'cut' | 'torn' | 'vein' | 'artery';
+/** What parts: a strand or a piece of membrane, or a vessel with its blood; and by an edge or by a pull. */
+export interface Parting {
+  what: 'strand' | 'vein' | 'artery';
+  by: 'cut' | 'torn';
+}
 export type ClipSound = 'shut' | 'released' | 'taken' | 'loaded';
 /** As IEC 60601-1-8 has them. */
 export type Priority = 'low' | 'medium' | 'high';
 
 interface EventSound {
-  strand?: Parting;
+  /** by: where the kind does not say it, the event does: an edge is in a hand, and a pull is nobody's. */
+  parts?: Pick<Parting, 'what'> & Partial<Parting>;
   clip?: ClipSound;
   alarm?: Priority;
 }
 
 /** By kind of event. What is not here is not heard. */
 export const eventSounds: Readonly<Record<string, EventSound>> = {
-  strand_cut: { strand: 'cut' },
-  strand_torn: { strand: 'torn' },
-  membrane_cut: { strand: 'cut' },
-  membrane_torn: { strand: 'torn' },
-  vein_parted: { strand: 'vein', alarm: 'medium' },
-  perforator_torn: { strand: 'artery', alarm: 'high' },
+  strand_cut: { parts: { what: 'strand', by: 'cut' } },
+  strand_torn: { parts: { what: 'strand', by: 'torn' } },
+  membrane_cut: { parts: { what: 'strand', by: 'cut' } },
+  membrane_torn: { parts: { what: 'strand', by: 'torn' } },
+  vein_parted: { parts: { what: 'vein' }, alarm: 'medium' },
+  perforator_torn: { parts: { what: 'artery', by: 'torn' }, alarm: 'high' },
   perforator_shut: { alarm: 'medium' },
   clip_shut: { clip: 'shut' },
   clip_released: { clip: 'released' },
@@ -60,6 +65,12 @@ export const eventSounds: Readonly<Record<string, EventSound>> = {
   bleeding_again: { alarm: 'high' },
   fault: { alarm: 'low' },
 };
+
+/** How something parted in this event; null: nothing did. */
+export function partingOf({ kind, hand }: { kind: string; hand: number }): Parting | null {
+  const parts = soundOf(kind)?.parts;
+  return parts ? { by: hand >= 0 ? 'cut' : 'torn', ...parts } : null;
+}
 
 export const soundOf = (kind: string): EventSound | null =>
   Object.hasOwn(eventSounds, kind) ? eventSounds[kind]! : null;
@@ -74,8 +85,28 @@ export const clockAlarm: Priority = 'high';
 /** What sucks while it is active, by its kind. */
 export const suctionKinds: ReadonlySet<string> = new Set(['suction']);
 
-/** Stiff enough to be heard when an instrument hits it, by the material of what stands still. */
-export const hardMaterials: ReadonlySet<string> = new Set(['bone', 'steel', 'steel_dark', 'titanium', 'polymer']);
+/** What a struck body is for the ear. */
+type Ring = 'bone' | 'metal' | 'polymer' | 'soft';
+
+/** By name. What is not here is soft if it is drawn as what gives way, and else like a hard polymer. */
+const rings: Readonly<Record<string, Ring>> = {
+  ...{ bone: 'bone', polymer: 'polymer' },
+  ...{ steel: 'metal', steel_dark: 'metal', titanium: 'metal', cobalt: 'metal', gold: 'metal' },
+  ...{ skin: 'soft', dura: 'soft', drape: 'soft', cotton: 'soft', silicone: 'soft' },
+};
+const softStyles: ReadonlySet<string> = new Set(['tissue', 'wall', 'fibre', 'sheet', 'fluid']);
+
+function ringOf(material: string, materials: ReadonlyMap<string, MaterialData>): Ring {
+  if (Object.hasOwn(rings, material)) return rings[material]!;
+  return softStyles.has(materials.get(material)?.style ?? '') ? 'soft' : 'polymer';
+}
+
+/** What is heard when two materials meet; null: nothing. */
+export function hitOf(a: string, b: string, materials: ReadonlyMap<string, MaterialData>): Hit | null {
+  const both = [ringOf(a, materials), ringOf(b, materials)];
+  if (both.every((r) => r === 'soft')) return null;
+  return (['soft', 'bone', 'polymer'] as const).find((r) => both.includes(r)) ?? 'metal';
+}
 
 /** A body of fluid, such as a pool in the field. */
 export const isPool = (d: DrawableData, materials: ReadonlyMap<string, MaterialData>): boolean =>
