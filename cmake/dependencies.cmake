@@ -17,6 +17,7 @@ find_package(SQLite3 REQUIRED)
 find_package(CURL REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto SSL)
 pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
+pkg_check_modules(AVAHI REQUIRED IMPORTED_TARGET avahi-core)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom)
 # Messages of urdfdom are captured through its console_bridge, which newer packages do not link by themselves.

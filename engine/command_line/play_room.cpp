@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <fstream>
 
 #include "core/base/input_error.h"
+#include "core/base/pin.h"
 #include "core/base/system_random.h"
 #include "training/store/data_folder.h"
 
@@ -16,12 +16,7 @@ namespace {
 
 constexpr const char* random_pin = "random";
 
-std::string new_pin() { return system_random(6, "0123456789"); }
-
-bool is_number_of_digits(const std::string& text, std::size_t fewest, std::size_t most) {
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  return text.size() >= fewest && text.size() <= most && std::all_of(text.begin(), text.end(), digit);
-}
+std::string new_pin() { return system_random(fewest_pin_digits, std::string(pin_digits)); }
 
 }  // namespace
 
@@ -33,6 +28,7 @@ void add_room_options(CLI::App& command, RoomOptions& o) {
   command.add_flag("--tls", o.tls, "pages are served by TLS with a certificate that is made here")
       ->excludes(certificate);
   command.add_option("--room-key", o.room_key, "file with a key, readable by its owner alone, that programs show");
+  command.add_flag("!--no-mdns", o.discovery, "neither announces this station in the network nor looks for others");
   command.add_option("--station", o.station, "name of this station in overviews; default: the machine's");
   command.add_option("--stations", o.stations, "file of the room's stations, for the overview: NAME URL [SHA-256]");
 }
@@ -41,7 +37,7 @@ fs::path write_pins(const RoomOptions& options, const fs::path& folder,
                     const std::function<void(std::string_view)>& print) {
   if (options.pin.empty()) return {};
   const std::string pin = options.pin == random_pin ? new_pin() : options.pin;
-  if (!is_number_of_digits(pin, 6, 12)) throw InputError("--pin: a PIN has 6 to 12 digits, as in --pin=123456");
+  if (!is_pin(pin)) throw InputError("--pin: a PIN has 6 to 12 digits, as in --pin=123456");
   std::string observer_pin = new_pin();
   while (observer_pin == pin) observer_pin = new_pin();
   const fs::path file = folder / "pins.json";
@@ -67,6 +63,7 @@ std::vector<std::string> room_arguments(const RoomOptions& o, const fs::path& pi
   add("--certificate", o.certificate.string());
   add("--key", o.key.string());
   if (o.tls) out.emplace_back("--tls");
+  if (!o.discovery) out.emplace_back("--no-mdns");
   return out;
 }
 

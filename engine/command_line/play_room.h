@@ -16,6 +16,7 @@ struct RoomOptions {
   std::filesystem::path certificate, key;  ///< given ones; empty: none
   std::filesystem::path room_key;          ///< file of the key that programs show; empty: none
   std::filesystem::path stations;          ///< list of the room's stations, for the overview; empty: none
+  bool discovery = true;                   ///< announces the station where others reach it, and finds others
   std::string station;                     ///< its name in the overview; empty: the machine's
 };
 

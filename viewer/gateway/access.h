@@ -2,6 +2,7 @@
 // Access to the gateway: the host names that it accepts, and the messages that a page of each role may send.
 #pragma once
 #include <boost/asio/ip/address.hpp>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -59,6 +60,8 @@ struct Visitor {
   std::string address;  ///< of the machine
   Access access = Access::none;
   Role role = Role::observer;
+  std::uint64_t page = 0;  ///< its number, once it is connected; 0: a request
+  std::string who = {};    ///< the login; empty: a page on this machine
   Rights rights() const { return rights_of(role, access); }
 };
 

@@ -51,6 +51,8 @@ Audit::~Audit() = default;
 void Audit::write(const AuditLine& line) {
   if (!log_) return;
   nlohmann::ordered_json json{{"time", utc_now()}, {"address", line.address}, {"role", line.role}};
+  const std::string person = line.who.empty() && person_ ? person_() : line.who;
+  json["who"] = person.empty() ? "guest" : cut(person);
   if (line.page != 0) json["page"] = line.page;
   json["command"] = cut(line.command);
   json["accepted"] = line.accepted;

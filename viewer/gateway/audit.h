@@ -3,9 +3,11 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace spdlog {
 class logger;
@@ -19,7 +21,8 @@ struct AuditLine {
   std::uint64_t page = 0;  ///< number of the connected page; 0: a request
   std::string command;     ///< with its argument
   bool accepted = false;
-  std::string why;  ///< it was refused
+  std::string why;       ///< it was refused
+  std::string who = {};  ///< the login; empty: the person at this machine
 };
 
 class Audit {
@@ -28,11 +31,14 @@ class Audit {
   /// InputError if it cannot be written.
   explicit Audit(const std::filesystem::path& file, std::size_t most_bytes = 2 << 20);
   ~Audit();
+  /// Tells who is at this machine now; empty: nobody is known.
+  void set_person(std::function<std::string()> person) { person_ = std::move(person); }
   /// Adds the time (UTC, ISO 8601). Texts of more than 400 bytes are cut.
   void write(const AuditLine& line);
 
  private:
   std::shared_ptr<spdlog::logger> log_;
+  std::function<std::string()> person_;
 };
 
 }  // namespace insula::gateway

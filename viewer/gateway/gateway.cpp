@@ -13,6 +13,7 @@
 
 #include "viewer/gateway/http_session.h"
 #include "viewer/gateway/hub.h"
+#include "viewer/gateway/service_discovery.h"
 #include "viewer/gateway/static_files.h"
 
 namespace asio = boost::asio;
@@ -31,7 +32,9 @@ struct Gateway::Impl {
         audit(options.audit),
         login_api(logins, audit),
         tls(options.tls.certificate.empty() ? nullptr : server_context(options.tls)),
-        hub(bus, [this](std::function<void()> f) { asio::post(io, std::move(f)); }) {}
+        hub(bus, [this](std::function<void()> f) { asio::post(io, std::move(f)); }) {
+    audit.set_person([this] { return station.person(); });
+  }
 
   Options options;
   AllowedHosts hosts;
@@ -48,13 +51,17 @@ struct Gateway::Impl {
   asio::steady_timer repeat{io};
   Hub hub;
   Station station{options.station, options.training.choice};
-  Room room{io, options.stations, options.secrets.key};
+  ServiceDiscovery discovery;
+  Room room{
+      io, {options.stations, options.kept_stations}, options.secrets.key, options.discovery ? &discovery : nullptr};
   Site site{hub, hosts, page, sessions, training, logins, login_api, audit, options.is_here, station, room};
   std::atomic<bool> stopping{false};
   std::thread network, bus_thread;
   std::uint16_t port = 0;
+  std::string announcement_error;
 
   std::string open();
+  void announce();
   void accept();
   void repeat_hands();
 };
@@ -83,6 +90,13 @@ std::string Gateway::Impl::open() {
     if (error != asio::error::address_in_use) break;
   }
   return fmt::format("cannot listen on {} port {}: {}", options.listen, options.port, error.message());
+}
+
+/// Only where other machines reach it.
+void Gateway::Impl::announce() {
+  const auto listen = acceptor.local_endpoint().address();
+  if (!options.discovery || listen.is_loopback()) return;
+  announcement_error = discovery.announce({station.name(), listen, port, tls != nullptr});
 }
 
 void Gateway::Impl::accept() {
@@ -117,6 +131,7 @@ std::string Gateway::start() {
   if (std::string error = impl_->open(); !error.empty()) return error;
   impl_->hub.watch(impl_->station);
   impl_->room.start();
+  impl_->announce();
   impl_->accept();
   impl_->repeat_hands();
   impl_->network = std::thread([this] { impl_->io.run(); });
@@ -134,6 +149,8 @@ void Gateway::stop() {
 }
 
 std::uint16_t Gateway::port() const { return impl_->port; }
+
+const std::string& Gateway::announcement_error() const { return impl_->announcement_error; }
 
 std::string Gateway::url() const {
   const std::string& at = impl_->options.listen;

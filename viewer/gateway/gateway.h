@@ -34,7 +34,9 @@ struct Options {
   std::filesystem::path audit;                       ///< record of commands; empty: none
   std::string station;                               ///< its name in overviews; empty: the machine's
   std::vector<StationAddress> stations;              ///< of the room, for the overview
-  IsHere is_here = same_machine;                     ///< tells pages on this machine from others
+  std::filesystem::path kept_stations;               ///< JSON of those that pages add to it; empty: they add none
+  bool discovery = true;          ///< announces the station where others reach it, and finds others for the overview
+  IsHere is_here = same_machine;  ///< tells pages on this machine from others
 };
 
 class Gateway {
@@ -51,6 +53,8 @@ class Gateway {
   void stop();
   std::uint16_t port() const;  ///< the port in use
   std::string url() const;     ///< for a browser on this machine
+  /// Why the station is not announced in the network; empty: it is, or need not be.
+  const std::string& announcement_error() const;
   /// Of the page that shows the given session files, the first two side by side; empty: none were given.
   std::string sessions_query() const;
 

@@ -100,6 +100,7 @@ Visitor HttpSession::visitor_of(const Request& request) {
   const Credentials credentials =
       site_.login_api.credentials(view(request[http::field::cookie]), view(request[http::field::authorization]));
   out.access = site_.login_api.access_of(credentials, out.address);
+  out.who = site_.login_api.who(credentials);
   return out;
 }
 

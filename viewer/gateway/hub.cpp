@@ -89,6 +89,7 @@ void Hub::join(const std::shared_ptr<Client>& client) {
   clients_.insert(client);
   ++clients_ever_;
   if (last_scene_info_) client->send(Topic::scene_info, last_scene_info_);
+  if (client->visitor().rights().speaks) tell_pages();
 }
 
 void Hub::leave(const Client* client) {
@@ -97,7 +98,9 @@ void Hub::leave(const Client* client) {
   const auto found = std::find_if(clients_.begin(), clients_.end(), [&](const auto& c) { return c.get() == client; });
   if (found == clients_.end()) return;
   dropped_by_left_ += (*found)->dropped();
+  const std::shared_ptr<Client> left = *found;
   clients_.erase(found);
+  leave_room(*left);
 }
 
 Hub::Taken Hub::command_from_page(Bytes payload) {
@@ -122,16 +125,6 @@ Hub::Taken Hub::hand_from_page(Bytes payload, const Client* page) {
   held.input = *message;
   held.asked = held.sent = Clock::now();
   return {publish(bus_, channel::hand_input, held.input, scratch_), "hand", "the bus does not take it", true};
-}
-
-Hub::Taken Hub::room_from_page(Bytes payload, const Visitor& visitor, const Client* page) {
-  const RoomMessage message = read_room_message(payload, visitor);
-  if (!message.why.empty()) return {false, message.what, message.why};
-  const Message framed =
-      frame(room_channel, {reinterpret_cast<const std::uint8_t*>(message.json.data()), message.json.size()});
-  for (const auto& client : clients_)
-    if (client.get() != page) client->send(Topic::room, framed);
-  return {true, message.what, "", message.what != "clear" && !message.what.starts_with("say")};
 }
 
 void Hub::repeat_hands(Clock::time_point now) {

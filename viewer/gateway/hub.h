@@ -14,6 +14,7 @@
 #include <insula_lcm/render_frame_t.hpp>
 #include <insula_lcm/scene_info_t.hpp>
 #include <insula_lcm/sim_event_t.hpp>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -23,6 +24,7 @@
 #include "viewer/gateway/access.h"
 #include "viewer/gateway/bundle.h"
 #include "viewer/gateway/outbox.h"
+#include "viewer/gateway/rate_limit.h"
 #include "viewer/gateway/station.h"
 
 namespace insula::gateway {
@@ -33,6 +35,7 @@ class Client {
   virtual ~Client() = default;
   virtual void send(Topic topic, const Message& message) = 0;
   virtual std::uint64_t dropped() const = 0;
+  virtual const Visitor& visitor() const = 0;
 };
 
 class Hub {
@@ -60,6 +63,9 @@ class Hub {
   /// with drawing. The haptic server otherwise takes such a page for lost. A page that is silent for longest_busy is.
   void repeat_hands(std::chrono::steady_clock::time_point now);
   static constexpr std::chrono::milliseconds repeat_period{50}, longest_busy{1500};
+  /// Asks the trainee's pages on this machine for a picture, unless they were asked just now.
+  void want_picture(std::chrono::steady_clock::time_point now);
+  static constexpr std::chrono::milliseconds picture_period{3000};
   /// Counts a page's message that was dropped before it was checked (text, too many per second).
   void refuse_from_page() { ++page_refused_; }
   /// Tells it what is on the bus.
@@ -74,6 +80,11 @@ class Hub {
   Taken command_from_page(Bytes payload);
   Taken hand_from_page(Bytes payload, const Client* page);
   Taken room_from_page(Bytes payload, const Visitor& visitor, const Client* page);
+  bool may_ring(const Client* page);
+  /// Sends JSON of the room to the pages that satisfy a condition. Their number.
+  int tell(const std::string& json, const std::function<bool(const Client&)>& whom);
+  void tell_pages();
+  void leave_room(const Client& left);
 
   Bus& bus_;
   Post post_;
@@ -108,6 +119,8 @@ class Hub {
     std::chrono::steady_clock::time_point asked{}, sent{};
   };
   std::array<HeldHand, 2> held_{};
+  std::map<const Client*, RateLimit> voices_;  ///< of pages that have begun to talk
+  std::chrono::steady_clock::time_point picture_wanted_{};
   std::vector<std::uint8_t> scratch_;
   std::uint64_t page_accepted_ = 0, page_refused_ = 0, clients_ever_ = 0, sent_ = 0, dropped_by_left_ = 0;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();

@@ -47,8 +47,12 @@ Access LoginApi::access_of(const Credentials& credentials, const std::string& ad
   if (credentials.key.empty()) return logins_.access_of(credentials.token);
   const Logins::Outcome outcome = logins_.access_of_key(credentials.key, address);
   if (!outcome.why.empty() && refused_lines_.take(RateLimit::Clock::now()))
-    audit_.write({address, "program", 0, "key", false, outcome.why});
+    audit_.write({address, "program", 0, "key", false, outcome.why, "no login"});
   return outcome.access;
+}
+
+std::string LoginApi::who(const Credentials& credentials) {
+  return credentials.key.empty() ? logins_.who(credentials.token) : "key of the room";
 }
 
 std::string LoginApi::state(Access access) const {
@@ -60,10 +64,12 @@ LoginApi::Answer LoginApi::log_in(const std::string& text, const std::string& ad
   const std::string pin = body.is_object() ? field(body, "pin") : "";
   const std::string ticket = body.is_object() ? field(body, "ticket") : "";
   if (pin.empty() == ticket.empty()) return {400, json_line({{"error", "give a pin or a ticket"}}), {}};
-  const Logins::Outcome outcome = ticket.empty() ? logins_.log_in(pin, address) : logins_.redeem(ticket, address);
+  const Logins::Outcome outcome =
+      ticket.empty() ? logins_.log_in(pin, address, field(body, "name")) : logins_.redeem(ticket, address);
   const bool accepted = outcome.access != Access::none;
   if (accepted || refused_lines_.take(RateLimit::Clock::now()))
-    audit_.write({address, std::string(name_of(outcome.access)), 0, "log in", accepted, outcome.why});
+    audit_.write({address, std::string(name_of(outcome.access)), 0, "log in", accepted, outcome.why,
+                  accepted ? outcome.who : "no login"});
   if (!accepted) return {outcome.too_many ? 429 : 401, json_line({{"error", outcome.why}}), {}};
   constexpr auto seconds = std::chrono::seconds(Logins::lasts).count();
   return {200, state(outcome.access),

@@ -27,6 +27,9 @@ class LoginApi {
   /// Of a request from another machine. Without a PIN and a key, everybody may observe.
   Access access_of(const Credentials& credentials, const std::string& address);
 
+  /// For the record.
+  std::string who(const Credentials& credentials);
+
   struct Answer {
     int status = 200;
     std::string json;
@@ -34,7 +37,8 @@ class LoginApi {
   };
   /// {"access": none, observer, instructor or here; "needed": whether other machines must log in}
   std::string state(Access access) const;
-  /// body: {"pin"} or {"ticket"}. 200 with a cookie, 400, 401, or 429 after too many wrong tries.
+  /// body: {"pin", "name": may be missing} or {"ticket"}. 200 with a cookie, 400, 401, or 429 after too many wrong
+  /// tries.
   Answer log_in(const std::string& body, const std::string& address);
   Answer log_out(const Credentials& credentials);
 

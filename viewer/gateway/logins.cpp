@@ -8,7 +8,9 @@
 #include <array>
 #include <utility>
 
+#include "core/base/pin.h"
 #include "core/base/system_random.h"
+#include "core/base/text.h"
 
 namespace insula::gateway {
 namespace {
@@ -26,6 +28,13 @@ bool same_secret(const std::string& given, const std::string& secret) {
 }
 
 std::string new_secret() { return system_random(64, "0123456789abcdef"); }  // 256 bits
+
+/// A PIN that was typed into the wrong field is not kept.
+bool is_name_of_person(const std::string& name) {
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  return !name.empty() && name.size() <= 60 && !is_pin(name) && find_invalid_utf8(name) == name.npos &&
+         std::none_of(name.begin(), name.end(), control);
+}
 
 template <class Map, class Time>
 void drop_ended(Map& map, Time now) {
@@ -64,20 +73,22 @@ Logins::Outcome Logins::refuse(const std::string& address, std::string why) {
   return {Access::none, {}, false, std::move(why)};
 }
 
-Logins::Outcome Logins::admit(Access access) {
+Logins::Outcome Logins::admit(Access access, const std::string& name) {
   drop_ended(tokens_, now_());
   make_room(tokens_, most_tokens);
   std::string token = new_secret();
-  tokens_[digest(token)] = {access, now_() + lasts};
-  return {access, std::move(token), false, {}};
+  const std::string number = "login " + std::to_string(++logins_);
+  const std::string who = is_name_of_person(name) ? name + " (" + number + ")" : number;
+  tokens_[digest(token)] = {access, now_() + lasts, who};
+  return {access, std::move(token), false, {}, who};
 }
 
-Logins::Outcome Logins::log_in(const std::string& pin, const std::string& address) {
+Logins::Outcome Logins::log_in(const std::string& pin, const std::string& address, const std::string& name) {
   if (too_many_wrong(address)) return {Access::none, {}, true, "too many wrong tries"};
   // Both are compared, so that the time does not tell which one it is not.
   const bool instructor = same_secret(pin, secrets_.pin), observer = same_secret(pin, secrets_.observer_pin);
   if (!instructor && !observer) return refuse(address, "this is not the PIN");
-  return admit(instructor ? Access::instructor : Access::observer);
+  return admit(instructor ? Access::instructor : Access::observer, name);
 }
 
 std::string Logins::ticket() {
@@ -95,7 +106,7 @@ Logins::Outcome Logins::redeem(const std::string& ticket, const std::string& add
   if (found == tickets_.end()) return refuse(address, "this ticket is used or has ended");
   const Access access = found->second.access;
   tickets_.erase(found);
-  return admit(access);
+  return admit(access, "ticket of an overview");
 }
 
 void Logins::log_out(const std::string& token) { tokens_.erase(digest(token)); }
@@ -103,6 +114,11 @@ void Logins::log_out(const std::string& token) { tokens_.erase(digest(token)); }
 Access Logins::access_of(const std::string& token) {
   const auto found = tokens_.find(digest(token));
   return found == tokens_.end() || found->second.ends <= now_() ? Access::none : found->second.access;
+}
+
+std::string Logins::who(const std::string& token) {
+  const auto found = tokens_.find(digest(token));
+  return found == tokens_.end() || found->second.ends <= now_() ? "no login" : found->second.who;
 }
 
 Logins::Outcome Logins::access_of_key(const std::string& key, const std::string& address) {

@@ -33,9 +33,11 @@ class Logins {
     std::string token;
     bool too_many = false;  ///< wrong tries; this one was not looked at
     std::string why;        ///< it was refused
+    std::string who = {};   ///< for the record: the given name and the number of the login
   };
-  /// address: of the asking machine. A wrong PIN is counted for it.
-  Outcome log_in(const std::string& pin, const std::string& address);
+  /// address: of the asking machine. A wrong PIN is counted for it. name: as the person calls himself; nobody checks
+  /// it; empty, malformed or a PIN: none.
+  Outcome log_in(const std::string& pin, const std::string& address, const std::string& name = {});
   /// Exchanges a ticket, once.
   Outcome redeem(const std::string& ticket, const std::string& address);
   /// Admits whoever shows it first, as an instructor.
@@ -44,6 +46,8 @@ class Logins {
 
   /// Of the holder of a token; none if it is unknown or has ended.
   Access access_of(const std::string& token);
+  /// Its holder; "no login" if it is unknown or has ended.
+  std::string who(const std::string& token);
   /// Of a program that shows the key. A wrong one is counted as a wrong PIN is.
   Outcome access_of_key(const std::string& key, const std::string& address);
 
@@ -51,10 +55,11 @@ class Logins {
   struct Token {
     Access access;
     Clock::time_point ends;
+    std::string who = {};
   };
   bool too_many_wrong(const std::string& address);
   Outcome refuse(const std::string& address, std::string why);
-  Outcome admit(Access access);
+  Outcome admit(Access access, const std::string& name);
 
   Secrets secrets_;
   std::function<Clock::time_point()> now_;
@@ -62,7 +67,7 @@ class Logins {
   std::map<std::string, Token> tokens_, tickets_;
   std::map<std::string, std::deque<Clock::time_point>> wrong_;  ///< of the last minute, by address
   std::deque<Clock::time_point> wrong_of_all_;
-  int wrong_until_now_ = 0;
+  int wrong_until_now_ = 0, logins_ = 0;
 };
 
 }  // namespace insula::gateway

@@ -32,6 +32,7 @@ void add_access_options(CLI::App& app, Options& options, Places& places) {
   app.add_flag("--tls", places.self_made, "serves by TLS with a certificate that is made here")->excludes(certificate);
   app.add_option("--station", options.station, "name of this station in overviews; default: the machine's");
   app.add_option("--stations", places.stations, "file of the room's stations, for the overview: NAME URL [SHA-256]");
+  app.add_flag("!--no-mdns", options.discovery, "neither announces this station in the network nor looks for others");
   app.add_option("--own", places.own, "folder for the record of commands and the certificate made here");
 }
 
@@ -47,6 +48,7 @@ void read_access(Options& options, const Places& places) {
     std::error_code error;
     fs::create_directories(places.own, error);
     options.audit = places.own / "commands.log";
+    options.kept_stations = places.own / "stations.json";
   }
   if (places.self_made) options.tls = insula::gateway::self_made_certificate(places.own, options.hosts);
 }
@@ -71,10 +73,13 @@ int serve(const Options& options) {
   if (options.page.empty()) fmt::print("the viewer's page is not built; serving the data alone\n");
   if (!options.tls.certificate.empty())
     fmt::print("SHA-256 of the certificate: {}\n", insula::gateway::fingerprint(options.tls.certificate));
+  if (const std::string& error = gateway.announcement_error(); !error.empty())
+    fmt::print("this station is not announced in the network: {}\n", error);
   fmt::print("serving {}\n", gateway.url());
   if (const std::string query = gateway.sessions_query(); !query.empty())
     fmt::print("recorded sessions at {}replay.html?{}\n", gateway.url(), query);
-  if (!options.stations.empty()) fmt::print("the room is at {}room.html\n", gateway.url());
+  if (!options.stations.empty() || !options.secrets.key.empty())
+    fmt::print("the room is at {}room.html\n", gateway.url());
   std::fflush(stdout);
   ends.wait(-1);
   gateway.stop();

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "viewer/gateway/station.h"
 
@@ -11,6 +13,7 @@ namespace insula::gateway {
 namespace {
 
 using Ordered = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
 namespace http = boost::beast::http;
 
 const std::string none;
@@ -32,72 +35,105 @@ std::string ticket_in(const StationAnswer& answer) {
 
 }  // namespace
 
-Room::Room(boost::asio::io_context& io, std::vector<StationAddress> stations, std::string key)
-    : io_(io), timer_(io), key_(std::move(key)) {
-  for (StationAddress& address : stations) stations_.emplace_back().address = std::move(address);
+Room::Room(boost::asio::io_context& io, Lists lists, std::string key, ServiceDiscovery* discovery)
+    : io_(io), timer_(io), kept_(std::move(lists.kept)), key_(std::move(key)), discovery_(discovery) {
+  for (StationAddress& address : lists.given) list(std::move(address), true);
+  read_kept();
 }
 
-void Room::start() {
-  if (!stations_.empty()) ask_all();
+void Room::list(StationAddress address, bool given) {
+  const auto entry = std::make_shared<Entry>();
+  entry->address = std::move(address);
+  entry->given = given;
+  entry->number = next_number_++;
+  stations_.push_back(entry);
 }
+
+Room::EntryPtr Room::find(std::size_t station) const {
+  for (const EntryPtr& entry : stations_)
+    if (entry->number == station) return entry;
+  return nullptr;
+}
+
+void Room::start() { ask_again(); }
 
 void Room::ask_all() {
-  for (Entry& entry : stations_)
-    if (!entry.asking) ask(entry);
+  for (const EntryPtr& entry : stations_)
+    if (!entry->asking) ask(entry);
+}
+
+void Room::ask_again() {
   timer_.expires_after(period);
   timer_.async_wait([this](boost::system::error_code error) {
-    if (!error) ask_all();
+    if (error) return;
+    if (Clock::now() - looked_ < nobody_looks) ask_all();
+    ask_again();
   });
 }
 
-void Room::ask(Entry& entry) {
-  entry.asking = true;
-  ask_station(io_, entry.address, {http::verb::get, "/api/station", key_},
-              [this, &entry](StationAnswer answer) { heard(entry, std::move(answer)); });
+void Room::ask(const EntryPtr& entry) {
+  entry->asking = true;
+  ask_station(io_, entry->address, {http::verb::get, "/api/station", key_},
+              [this, entry](StationAnswer answer) { heard(entry, std::move(answer)); });
 }
 
-void Room::heard(Entry& entry, StationAnswer answer) {
-  entry.asking = false;
+void Room::heard(const EntryPtr& entry, StationAnswer answer) {
+  entry->asking = false;
   const Ordered said = Ordered::parse(answer.body, nullptr, false);
   const bool good = answer.status == 200 && said.is_object();
-  entry.error = good ? "" : answer.status == 200 ? "it is no station of Insula" : why_not(answer);
+  entry->error = good ? "" : answer.status == 200 ? "it is no station of Insula" : why_not(answer);
   if (!good) return;
-  entry.said = answer.body;
+  entry->said = answer.body;
   const std::uint64_t number =
       said.contains("picture") && said["picture"].is_number_unsigned() ? said["picture"].get<std::uint64_t>() : 0;
-  if (number != entry.picture_number) ask_picture(entry, number);
+  if (number != entry->picture_number) ask_picture(entry, number);
 }
 
-void Room::ask_picture(Entry& entry, std::uint64_t number) {
-  entry.asking = true;
-  ask_station(io_, entry.address, {http::verb::get, "/api/station/picture", key_},
-              [&entry, number](StationAnswer answer) {
-                entry.asking = false;
+void Room::ask_picture(const EntryPtr& entry, std::uint64_t number) {
+  entry->asking = true;
+  ask_station(io_, entry->address, {http::verb::get, "/api/station/picture", key_},
+              [entry, number](StationAnswer answer) {
+                entry->asking = false;
                 if (answer.status != 200 || answer.body.size() > Station::most_picture_bytes ||
                     !is_jpeg(answer.body, Station::most_picture_px))
                   return;
-                entry.picture = std::move(answer.body);
-                entry.picture_number = number;
+                entry->picture = std::move(answer.body);
+                entry->picture_number = number;
               });
 }
 
-std::string Room::json() const {
-  Ordered out = Ordered::array();
-  for (const Entry& entry : stations_)
-    out.push_back({{"name", entry.address.name},
-                   {"url", entry.address.url()},
-                   {"error", entry.error},
-                   {"picture", entry.picture_number},
-                   {"station", entry.said.empty() ? Ordered() : Ordered::parse(entry.said, nullptr, false)}});
+bool Room::is_listed(const StationAddress& address) const {
+  return std::any_of(stations_.begin(), stations_.end(),
+                     [&](const EntryPtr& entry) { return entry->address.host_and_port() == address.host_and_port(); });
+}
+
+std::string Room::json() {
+  const bool first = Clock::now() - std::exchange(looked_, Clock::now()) >= nobody_looks;
+  if (first) ask_all();
+  Ordered out{{"stations", Ordered::array()}, {"found", Ordered::array()}};
+  out["search_error"] = discovery_ ? discovery_->browse() : "it is switched off";
+  for (const EntryPtr& entry : stations_)
+    out["stations"].push_back(
+        {{"number", entry->number},
+         {"name", entry->address.name},
+         {"url", entry->address.url()},
+         {"given", entry->given},
+         {"error", entry->error},
+         {"picture", entry->picture_number},
+         {"station", entry->said.empty() ? Ordered() : Ordered::parse(entry->said, nullptr, false)}});
+  if (discovery_)
+    for (const StationAddress& found : discovery_->found())
+      if (!is_listed(found)) out["found"].push_back({{"name", found.name}, {"url", found.url()}});
   return out.dump(-1, ' ', false, Ordered::error_handler_t::replace) + "\n";
 }
 
 const std::string& Room::picture(std::size_t station) const {
-  return station < stations_.size() ? stations_[station].picture : none;
+  const EntryPtr entry = find(station);
+  return entry ? entry->picture : none;
 }
 
 void Room::open(std::size_t station, std::function<void(std::string url)> done) {
-  const StationAddress& address = stations_[station].address;
+  const StationAddress& address = find(station)->address;
   ask_station(io_, address, {http::verb::post, "/api/ticket", key_},
               [url = address.url(), done = std::move(done)](const StationAnswer& answer) {
                 const std::string ticket = ticket_in(answer);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/text.h"
+#include "viewer/gateway/voice_message.h"
 
 namespace insula::gateway {
 namespace {
@@ -33,11 +34,11 @@ bool are_points(const Json& points) {
   return true;
 }
 
-RoomMessage refused(std::string what, std::string_view why) { return {{}, std::move(what), why}; }
+RoomMessage refused(std::string what, std::string_view why) { return {{}, std::move(what), why, false, 0}; }
 
 RoomMessage written(Json json, std::string what, const Visitor& visitor) {
   json["from"] = name_of(visitor.role);
-  return {json.dump(), std::move(what), {}};
+  return {json.dump(), std::move(what), {}, false, 0};
 }
 
 RoomMessage said(const Json& json, const Visitor& visitor) {
@@ -70,6 +71,7 @@ RoomMessage read_room_message(Bytes payload, const Visitor& visitor) {
   if (!json.is_object() || find_invalid_utf8(text) != std::string_view::npos) return refused({}, "malformed");
   const std::string kind = string_at(json, "kind");
   if (kind == "say") return said(json, visitor);
+  if (kind == "voice") return read_voice_message(json, visitor);
   if (kind == "stroke" || kind == "point" || kind == "clear") return drawn(kind, json, visitor);
   return refused({}, "malformed");
 }

@@ -85,12 +85,12 @@ std::string station_lines(const std::vector<std::unique_ptr<LiveStation>>& stati
   return out;
 }
 
-/// What an overview says when it satisfies a condition; what it says last if it never does.
+/// What an overview says of its listed stations when it satisfies a condition; what it says last if it never does.
 template <class Condition>
 json overview(LiveStation& instructor, Condition condition) {
   json out;
   for (int i = 0; i < 400; ++i) {
-    out = json::parse(instructor.ask(here, {http::verb::get, "/api/room"}).body());
+    out = json::parse(instructor.ask(here, {http::verb::get, "/api/room"}).body())["stations"];
     if (condition(out)) return out;
     std::this_thread::sleep_for(50ms);
   }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/input_error.h"
+#include "core/base/pin.h"
 #include "core/base/private_file.h"
 
 namespace insula::gateway {
@@ -32,8 +33,6 @@ std::string read_private(const fs::path& file) {
 }
 
 }  // namespace
-
-bool is_pin(const std::string& text) { return text.size() >= 6 && text.size() <= 12 && all_of(text, is_digit); }
 
 bool is_key(const std::string& text) {
   return text.size() >= 32 && text.size() <= 128 && all_of(text, is_key_character);

@@ -12,8 +12,6 @@ struct Secrets {
   std::string key;           ///< admits programs and the instructor's own gateway; empty: none
 };
 
-/// Six to twelve digits.
-bool is_pin(const std::string& text);
 /// 32 to 128 letters, digits, "-" and "_".
 bool is_key(const std::string& text);
 

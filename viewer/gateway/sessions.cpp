@@ -8,6 +8,8 @@
 
 namespace fs = std::filesystem;
 
+#include "viewer/gateway/replace_file.h"
+
 namespace insula::gateway {
 namespace {
 
@@ -81,15 +83,8 @@ std::string Sessions::notes(const fs::path& recording) {
 std::string Sessions::store_notes(const fs::path& recording, std::string_view json) {
   if (json.size() > most_notes_bytes || !are_notes(nlohmann::json::parse(json, nullptr, false)))
     return "notes are a list of {\"time_s\": number, \"text\": string}";
-  const fs::path file = notes_file(recording), part = file.string() + ".part";
-  std::ofstream out(part, std::ios::binary | std::ios::trunc);
-  out << json;
-  out.close();
-  std::error_code error;
-  if (out) fs::rename(part, file, error);
-  if (out && !error) return {};
-  fs::remove(part, error);
-  return file.string() + " cannot be written";
+  const fs::path file = notes_file(recording);
+  return replace_file(file, json) ? "" : file.string() + " cannot be written";
 }
 
 }  // namespace insula::gateway

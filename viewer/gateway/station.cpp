@@ -48,6 +48,8 @@ bool is_jpeg(std::string_view bytes, int most_px) {
 Station::Station(std::string name, std::filesystem::path choice)
     : name_(name.empty() ? machine_name() : std::move(name)), choice_(std::move(choice)) {}
 
+std::string Station::person() const { return person_in(choice_); }
+
 void Station::scene(const insula_lcm::scene_info_t& info) {
   if (info.session != session_) alarms_.clear();
   session_ = info.session;
@@ -69,8 +71,7 @@ void Station::frame(double sim_time_s, Clock::time_point now) {
 
 std::string Station::json(Clock::time_point now) const {
   const bool seen = frame_at_ != Clock::time_point{};
-  Ordered out{
-      {"name", name_}, {"person", person_in(choice_)}, {"title", title_}, {"state", state_}, {"time_s", time_s_}};
+  Ordered out{{"name", name_}, {"person", person()}, {"title", title_}, {"state", state_}, {"time_s", time_s_}};
   out["frame_age_ms"] = seen ? std::chrono::duration_cast<std::chrono::milliseconds>(now - frame_at_).count() : -1;
   out["alarms"] = Ordered::array();
   for (const Alarm& alarm : alarms_)

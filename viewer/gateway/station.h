@@ -21,6 +21,8 @@ class Station {
   /// name: empty: the machine's. choice: JSON with the person (engine/live/exercise_choice.h); empty: nobody is known.
   Station(std::string name, std::filesystem::path choice);
 
+  const std::string& name() const { return name_; }
+  std::string person() const;  ///< empty: nobody is known
   void scene(const insula_lcm::scene_info_t& info);
   void event(const insula_lcm::sim_event_t& event);  ///< faults and complications are alarms, until a reset
   void frame(double sim_time_s, Clock::time_point now);

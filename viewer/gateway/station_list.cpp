@@ -15,6 +15,7 @@ namespace insula::gateway {
 namespace {
 
 constexpr std::string_view plain = "http://", encrypted = "https://";
+constexpr std::size_t longest_name = 63;
 
 /// Empty if the text is no address of a station.
 std::string read_url(std::string_view url, StationAddress& out) {
@@ -37,14 +38,16 @@ bool is_fingerprint(const std::string& text) {
   return text.size() == 95 && std::all_of(text.begin(), text.end(), good);
 }
 
-std::string read_line(const std::vector<std::string_view>& words, StationAddress& out) {
-  if (words.size() < 2 || words.size() > 3) return "expected NAME URL, and perhaps the SHA-256 of a certificate";
-  out.name = words[0];
-  if (words.size() == 3) out.fingerprint = words[2];
-  if (!out.fingerprint.empty() && !is_fingerprint(out.fingerprint))
-    return "a SHA-256 has 32 pairs of digits such as AB, with colons between them";
-  if (std::string why = read_url(words[1], out); !why.empty()) return why;
-  return !out.fingerprint.empty() && !out.encrypted ? "only https:// has a certificate" : "";
+bool is_name(std::string_view text) {
+  const auto control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  return !text.empty() && text.size() <= longest_name && find_invalid_utf8(text) == text.npos &&
+         std::none_of(text.begin(), text.end(), control);
+}
+
+StationAddress read_line(const std::vector<std::string_view>& words) {
+  if (words.size() < 2 || words.size() > 3)
+    throw InputError("expected NAME URL, and perhaps the SHA-256 of a certificate");
+  return station_of(words[0], words[1], words.size() == 3 ? words[2] : "");
 }
 
 }  // namespace
@@ -57,6 +60,19 @@ std::string StationAddress::url() const {
   return fmt::format("{}{}/", encrypted ? "https://" : "http://", host_and_port());
 }
 
+StationAddress station_of(std::string_view name, std::string_view url, std::string_view fingerprint) {
+  StationAddress out;
+  out.name = name;
+  out.fingerprint = fingerprint;
+  if (!is_name(name)) throw InputError("a name has 1 to 63 bytes");
+  if (std::string why = read_url(url, out); !why.empty()) throw InputError(why);
+  if (fingerprint.empty()) return out;
+  if (!is_fingerprint(out.fingerprint))
+    throw InputError("a SHA-256 has 32 pairs of digits such as AB, with colons between them");
+  if (!out.encrypted) throw InputError("only https:// has a certificate");
+  return out;
+}
+
 std::vector<StationAddress> read_stations(const std::filesystem::path& file) {
   std::ifstream in(file);
   if (!in) throw InputError(fmt::format("{} cannot be read", file.string()));
@@ -66,11 +82,12 @@ std::vector<StationAddress> read_stations(const std::filesystem::path& file) {
     ++number;
     const std::vector<std::string_view> words = split_blanks(std::string_view(line).substr(0, line.find('#')));
     if (words.empty()) continue;
-    StationAddress station;
-    std::string why = read_line(words, station);
-    if (out.size() == most_stations) why = fmt::format("a room has at most {} stations", most_stations);
-    if (!why.empty()) throw InputError(fmt::format("{}:{}: error: {}", file.string(), number, why));
-    out.push_back(std::move(station));
+    try {
+      out.push_back(read_line(words));
+      if (out.size() > most_stations) throw InputError(fmt::format("a room has at most {} stations", most_stations));
+    } catch (const InputError& e) {
+      throw InputError(fmt::format("{}:{}: error: {}", file.string(), number, e.what()));
+    }
   }
   if (out.empty()) throw InputError(fmt::format("{} names no station", file.string()));
   return out;

@@ -3,6 +3,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace insula::gateway {
@@ -20,6 +21,9 @@ struct StationAddress {
 };
 
 inline constexpr std::size_t most_stations = 100;
+
+/// From its words; fingerprint: empty: none. Throws InputError with what is wrong.
+StationAddress station_of(std::string_view name, std::string_view url, std::string_view fingerprint);
 
 /// Throws InputError with the line that is wrong.
 std::vector<StationAddress> read_stations(const std::filesystem::path& file);

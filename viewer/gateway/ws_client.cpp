@@ -29,7 +29,9 @@ std::uint64_t next_number() {
 }  // namespace
 
 WsClient::WsClient(PageStream&& stream, Hub& hub, Audit& audit, Visitor visitor)
-    : ws_(std::move(stream)), hub_(hub), audit_(audit), visitor_(std::move(visitor)), number_(next_number()) {}
+    : ws_(std::move(stream)), hub_(hub), audit_(audit), visitor_(std::move(visitor)) {
+  visitor_.page = next_number();
+}
 
 void WsClient::start(const http::request<http::string_body>& request) {
   beast::error_code ignored;
@@ -86,7 +88,8 @@ void WsClient::record(const Hub::Taken& taken) {
   }
   std::string why(taken.accepted ? std::string_view() : taken.why);
   if (!taken.accepted && unrecorded_ > 0) why += fmt::format(" (and {} more refusals)", std::exchange(unrecorded_, 0));
-  audit_.write({visitor_.address, std::string(name_of(visitor_.role)), number_, taken.what, taken.accepted, why});
+  audit_.write({visitor_.address, std::string(name_of(visitor_.role)), visitor_.page, taken.what, taken.accepted, why,
+                visitor_.who});
 }
 
 void WsClient::send(Topic topic, const Message& message) {

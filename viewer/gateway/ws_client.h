@@ -26,6 +26,7 @@ class WsClient final : public Client, public std::enable_shared_from_this<WsClie
 
   void send(Topic topic, const Message& message) override;
   std::uint64_t dropped() const override { return outbox_.dropped(); }
+  const Visitor& visitor() const override { return visitor_; }
 
  private:
   void read();
@@ -42,7 +43,6 @@ class WsClient final : public Client, public std::enable_shared_from_this<WsClie
   Outbox outbox_;
   Message in_flight_;
   bool open_ = false;
-  std::uint64_t number_;
   // Two hands at 60 Hz and some commands, with room; then what persons do by hand; then lines that tell of refusals.
   RateLimit messages_{500, 500}, actions_{60, 120}, refusals_{2, 20};
   std::uint64_t unrecorded_ = 0;  // refusals since the last line

@@ -1,69 +1,89 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Twenty stations on one machine: real gateways and recorded engines, and an overview that asks them all and
-// opens one. Exit status 77: no browser, no programs or no multicast, skipped.
+// Twenty stations on one machine: real gateways and recorded engines, and an overview that asks them all, lists one
+// more and opens one. Then how long the instructor's pointer and pencil take to the trainee's page. Exit status 77: no
+// browser, no programs or no multicast, skipped.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { fileURLToPath } from 'node:url';
-import { check, launch, patience } from './browser.mjs';
+import { check, click, launch, patience } from './browser.mjs';
+import { Programs } from './programs.mjs';
 import { recorder } from './recorded_engine.mjs';
 
 const count = 20;
-const root = fileURLToPath(new URL('../../..', import.meta.url));
-const programs = join(root, 'build/release/bin');
-if (!existsSync(join(programs, 'gateway'))) {
-  console.log(`skipped: no programs in ${programs}`);
-  process.exit(77);
-}
+const programs = new Programs();
 const began = performance.now();
 const folder = mkdtempSync(join(tmpdir(), 'insula_room_'));
-const children = [];
 const firstBus = 20000 + ((process.pid * 23) % 20000);
+const buses = Array.from({ length: count }, (_, k) => `udpm://239.255.76.67:${firstBus + k}?ttl=0`);
 
-function start(program, words, bus) {
-  const env = { ...process.env, LCM_DEFAULT_URL: bus };
-  const child = spawn(join(programs, program), words, { cwd: root, env, stdio: ['ignore', 'pipe', 'pipe'] });
-  children.push(child);
-  return child;
+/** Lists one more station in the dialog. The text of the error that is shown; '': it was taken. */
+async function addStation(page, name, url) {
+  await page.getByLabel('Name', { exact: true }).fill(name);
+  await page.getByLabel('Address', { exact: true }).fill(url);
+  const answered = page.waitForResponse(/api\/room\/stations$/, patience);
+  await page.evaluate(() => (document.querySelector('.why').textContent = ''));
+  await click(page, '.station-form button[type=submit]');
+  await answered;
+  await page.waitForFunction(
+    () => !document.querySelector('.station-form').open || document.querySelector('.why').textContent !== '',
+    null,
+    patience,
+  );
+  return page.evaluate(() => document.querySelector('.why').textContent);
 }
 
-/** The address that a gateway prints. */
-function gateway(words, bus) {
-  const child = start('gateway', ['--port', '0', ...words], bus);
-  return new Promise((resolve) => {
-    let said = '';
-    for (const out of [child.stdout, child.stderr])
-      out.on('data', (d) => {
-        said += d;
-        const found = /serving (\S+)/.exec(said);
-        if (found) resolve(found[1]);
-      });
-    child.once('exit', (status) => {
-      if (ended) return;
-      console.log(`skipped: the gateway ended with ${status}: ${said}`);
-      process.exit(77);
-    });
+/** From an event on one page to the mark in the scene of the other, ms: how long each of several moves took. */
+async function delays(from, to, what, act) {
+  await from.evaluate(() => {
+    const tell = (e) => (window.__moved = performance.timeOrigin + e.timeStamp);
+    for (const kind of ['pointerdown', 'pointermove'])
+      document.querySelector('canvas.strokes').addEventListener(kind, tell, { capture: true });
   });
+  const out = [];
+  for (let k = 0; k < 12; k++) {
+    const before = await to.evaluate((w) => window.__insula[w], what);
+    await act(k);
+    await to.waitForFunction(([w, b]) => window.__insula[w] > b, [what, before], { ...patience, polling: 10 });
+    const heard = await to.evaluate((w) => window.__insula[w], what);
+    out.push(heard - (await from.evaluate(() => window.__moved)));
+  }
+  return out.sort((a, b) => a - b);
 }
 
-let ended = false;
+function report(what, sorted) {
+  const median = sorted[Math.floor(sorted.length / 2)];
+  console.log(`${what}: median ${median.toFixed(0)} ms, worst ${sorted.at(-1).toFixed(0)} ms of ${sorted.length}`);
+  // 150 ms is wanted. A machine that others use too may take several times as long.
+  assert.ok(median < 1500, `${what} takes ${median} ms`);
+}
+
 const browser = await launch();
 try {
   const record = await recorder({ folder, seconds: 4, rate: 10 });
+  const engines = [];
   const urls = await Promise.all(
-    Array.from({ length: count }, (_, k) => {
-      const bus = `udpm://239.255.76.67:${firstBus + k}?ttl=0`;
-      start('insula', ['replay', record(`Exercise ${k + 1}`), '--loop'], bus);
-      return gateway(['--station', `table ${k + 1}`], bus);
+    buses.map((bus, k) => {
+      engines.push(programs.start('insula', ['replay', record(`Exercise ${k + 1}`), '--loop'], bus));
+      return programs.gateway(['--station', `table ${k + 1}`, '--no-mdns'], bus);
     }),
   );
-  writeFileSync(join(folder, 'stations'), urls.map((u, k) => `Table_${k + 1} ${u}`).join('\n'));
-  const desk = await gateway(['--stations', join(folder, 'stations')], 'memq://');
+  const listed = urls.slice(0, count - 1).map((u, k) => `Table_${k + 1} ${u}`);
+  writeFileSync(join(folder, 'stations'), listed.join('\n'));
+  mkdirSync(join(folder, 'own'));
+  const own = ['--own', join(folder, 'own'), '--no-mdns'];
+  const desk = await programs.gateway(['--stations', join(folder, 'stations'), ...own], 'memq://');
   const page = await browser.newPage({ viewport: { width: 1366, height: 1100 } });
   await page.goto(`${desk}room.html`);
+  await page.getByText(`${count - 1} of ${count - 1} stations answer`).waitFor(patience);
+  await page.getByRole('button', { name: 'Add a station' }).click();
+  assert.match(await addStation(page, `Table_${count}`, 'http://table:99999/'), /no address of a station/);
+  assert.match(await addStation(page, `Table_${count}`, urls[0]), /this address is listed already/);
+  assert.equal(await addStation(page, `Table_${count}`, urls.at(-1)), '');
+  await page.reload();
   await page.getByText(`${count} of ${count} stations answer`).waitFor(patience);
+  check('a station is listed in a dialog, and a wrong address is told');
+
   const alarmed = page.locator('.station[data-standing=alarm]');
   await page.waitForFunction((n) => document.querySelectorAll('[data-standing=alarm]').length === n, count, patience);
   for (let k = 0; k < count; k++) {
@@ -84,6 +104,7 @@ try {
     .evaluate((i) => i.decode().then(() => i.naturalWidth));
   assert.equal(shown, 320);
   check('the picture of a trainee who works arrives in the overview');
+  if (process.env.INSULA_SHOTS) await page.screenshot({ path: join(process.env.INSULA_SHOTS, 'room.png') });
 
   const [instructor] = await Promise.all([
     page.waitForEvent('popup'),
@@ -92,10 +113,52 @@ try {
   await instructor.waitForURL(/role=instructor/, patience);
   assert.ok(instructor.url().startsWith(urls[6]), 'the page of that station');
   check('a station opens from the overview');
-  assert.ok(performance.now() - began < 300_000, 'it takes less than five minutes on a machine that others use too');
+
+  page.once('dialog', (d) => d.accept());
+  await page.getByRole('button', { name: `Remove Table_${count} from the list` }).click();
+  await page.waitForFunction((n) => document.querySelectorAll('.station').length === n, count - 1, patience);
+  await page.close();
+  // The gateway takes the overview for closed after ten seconds. Then no picture follows for eight seconds, while one
+  // every three seconds would if somebody looked.
+  const thumbnails = () => trainee.evaluate(() => window.__insula.thumbnails);
+  let before = await thumbnails();
+  assert.ok(before > 0);
+  let quiet = false;
+  for (let k = 0; k < 8 && !quiet; k++) {
+    await new Promise((r) => setTimeout(r, 8000));
+    const now = await thumbnails();
+    quiet = now === before;
+    before = now;
+  }
+  assert.ok(quiet, 'pictures go on');
+  check('no picture is read back when nobody looks at the overview');
+
+  engines.forEach((engine, k) => k !== 6 && engine.kill('SIGTERM'));
+  await instructor.setViewportSize({ width: 960, height: 540 });
+  await instructor.goto(`${urls[6]}?role=instructor&quality=draft`);
+  await instructor.waitForFunction(() => window.__insula?.ready, null, patience);
+  const button = (label) =>
+    instructor.evaluate(
+      (l) => [...document.querySelectorAll('.pencil button')].find((b) => b.textContent === l).click(),
+      label,
+    );
+  await button('Point');
+  const pointing = await delays(instructor, trainee, 'point_ms', (k) =>
+    instructor.mouse.move(400 + 10 * k, 250 + 5 * k),
+  );
+  report('pointing', pointing);
+  await button('Draw');
+  const drawing = await delays(instructor, trainee, 'stroke_ms', async (k) => {
+    await instructor.mouse.move(420 + 10 * k, 250);
+    await instructor.mouse.down();
+    await instructor.mouse.up();
+  });
+  report('drawing', drawing);
+  assert.ok((await trainee.evaluate(() => window.__insula.strokes)) > 0);
+  check('pointer and strokes go from page to page');
+  console.log(`${((performance.now() - began) / 1000).toFixed(0)} s`);
 } finally {
-  ended = true;
   await browser.close();
-  for (const child of children) child.kill('SIGTERM');
+  programs.end();
   rmSync(folder, { recursive: true, force: true });
 }

@@ -3,7 +3,9 @@
 import { describe, expect, it } from 'vitest';
 import { nextPage } from '../src/login/next';
 import { longestText, parseRoomMessage, type RoomMessage, sayable } from '../src/room/messages';
-import { standingOf, stationsOf } from '../src/room/overview';
+import { alarmLines } from '../src/room/cards';
+import { roomOf, standingOf, stationsOf } from '../src/room/overview';
+import { addressOf, fingerprintOf } from '../src/room/station_form';
 import { opacity, pointLastsMs, strokeLastsMs, Strokes } from '../src/room/strokes';
 
 const parse = (json: unknown): RoomMessage | null => parseRoomMessage(new TextEncoder().encode(JSON.stringify(json)));
@@ -37,6 +39,51 @@ describe('messages of the room', () => {
   });
 });
 
+describe('messages about voice', () => {
+  it('are checked before use', () => {
+    const head = { kind: 'voice', from: 'instructor', page: 3 };
+    expect(parse({ ...head, step: 'ring', sdp: 7 })).toEqual({ ...head, step: 'ring' });
+    expect(parse({ ...head, step: 'offer', sdp: 'v=0' })).toEqual({ ...head, step: 'offer', sdp: 'v=0' });
+    expect(parse({ kind: 'pages', instructors: 1, trainees: 0 })).not.toBeNull();
+    expect(parse({ kind: 'picture' })).toEqual({ kind: 'picture' });
+    for (const bad of [
+      { ...head },
+      { ...head, step: 'shout' },
+      { ...head, step: 'offer' },
+      { ...head, step: 'answer', sdp: 1 },
+      { ...head, page: -1, step: 'ring' },
+      { ...head, page: '3', step: 'ring' },
+      { kind: 'voice', page: 3, step: 'ring' },
+      { kind: 'pages', instructors: 1 },
+      { kind: 'pages', instructors: -1, trainees: 0 },
+    ])
+      expect(parse(bad)).toBeNull();
+  });
+});
+
+describe('a new station', () => {
+  it('is read as persons write it', () => {
+    expect(addressOf(' table3.local:8080 ')).toBe('http://table3.local:8080');
+    expect(addressOf('https://b.local/')).toBe('https://b.local/');
+    expect(addressOf('')).toBe('');
+    const pairs = Array.from({ length: 32 }, () => 'AB').join(':');
+    expect(fingerprintOf(` ${'ab'.repeat(32)} `)).toBe(pairs);
+    expect(fingerprintOf(pairs.toLowerCase())).toBe(pairs);
+    expect(fingerprintOf(' AB:CD ')).toBe('AB:CD');
+  });
+});
+
+describe('stations that were found', () => {
+  it('are shown only with an address of a page', () => {
+    const found = (each: unknown) => roomOf({ stations: [], found: [each] }).found;
+    expect(found({ name: 'a', url: 'https://192.0.2.1:8080/' })).toHaveLength(1);
+    for (const bad of [null, {}, { name: 'a', url: 'javascript:alert(1)' }, { name: '', url: 'http://a/' }])
+      expect(found(bad)).toEqual([]);
+    expect(found({ name: 'a', url: 'http://a/path/' })).toEqual([]);
+    expect(roomOf(null)).toEqual({ stations: [], found: [], searchError: '' });
+  });
+});
+
 describe('strokes', () => {
   it('grow by their number, fade by themselves and are wiped', () => {
     const s = new Strokes();
@@ -66,6 +113,13 @@ describe('strokes', () => {
 });
 
 describe('the overview', () => {
+  it('shows an alarm that came again as one line', () => {
+    const alarm = (what: string, timeS: number) => ({ kind: 'fault', text: what, timeS });
+    const lines = alarmLines([alarm('torn', 2), alarm('bleeds', 3), alarm('torn', 4)]);
+    expect(lines.map((l) => l.replace(/^\S+ /, ''))).toEqual(['bleeds', 'torn ×2']);
+    expect(alarmLines([])).toEqual([]);
+  });
+
   it('says how a station stands', () => {
     const at = (station: object, more: object = {}) =>
       standingOf(stationsOf([{ name: 'A', url: 'http://a/', error: '', picture: 1, station, ...more }])[0]!);

@@ -9,7 +9,7 @@ const base = new URL('./', window.location.href);
 const next = nextPage(new URLSearchParams(window.location.search).get('next') ?? '', base);
 
 /** '' if the gateway admits this browser; else why it does not. */
-async function logIn(secret: { pin: string } | { ticket: string }): Promise<string> {
+async function logIn(secret: { pin: string; name: string } | { ticket: string }): Promise<string> {
   const answer = await fetch(new URL('api/login', base), {
     method: 'POST',
     headers: { 'Content-Type': 'application/json' },
@@ -28,10 +28,20 @@ const pin = el('input', {
   maxlength: '12',
   required: '',
 });
+const called = el('input', { id: 'name', type: 'text', autocomplete: 'name', maxlength: '40' });
 const say = el('p', { class: 'say', role: 'alert' });
-const form = el('form', {}, el('label', { for: 'pin' }, text('PIN')), pin, el('button', {}, text('Log in')), say);
+const form = el(
+  'form',
+  {},
+  el('label', { for: 'pin' }, text('PIN')),
+  pin,
+  el('button', {}, text('Log in')),
+  el('label', { for: 'name', class: 'called' }, text('Your name, for the record (may stay empty)')),
+  called,
+  say,
+);
 
-async function enter(secret: { pin: string } | { ticket: string }): Promise<void> {
+async function enter(secret: { pin: string; name: string } | { ticket: string }): Promise<void> {
   say.textContent = '';
   try {
     const why = await logIn(secret);
@@ -45,7 +55,7 @@ async function enter(secret: { pin: string } | { ticket: string }): Promise<void
 
 form.onsubmit = (e) => {
   e.preventDefault();
-  void enter({ pin: pin.value.trim() });
+  void enter({ pin: pin.value.trim(), name: called.value.trim() });
 };
 
 document

@@ -14,6 +14,17 @@ export function standingText(s: StationView, standing: Standing): string {
   return '';
 }
 
+/** An alarm that came several times is one line, with its last time. */
+export function alarmLines(alarms: StationView['alarms']): string[] {
+  const last = new Map<string, { timeS: number; count: number }>();
+  for (const { text: what, timeS } of alarms) {
+    const count = (last.get(what)?.count ?? 0) + 1;
+    last.delete(what); // so that the latest stands last
+    last.set(what, { timeS, count });
+  }
+  return [...last].map(([what, { timeS, count }]) => `${clockText(timeS)} ${what}${count > 1 ? ` ×${count}` : ''}`);
+}
+
 export class StationCard {
   readonly root = el('article', { class: 'station' });
   private readonly picture = el('img', { alt: '' });
@@ -29,12 +40,20 @@ export class StationCard {
     name: string,
     private readonly pictureUrl: (number: number) => string,
     open: () => void,
+    remove: (() => void) | null,
   ) {
     this.picture.hidden = true;
     this.open.onclick = open;
     const head = el('header', {}, el('h2', {}, name), this.person, this.clock);
     this.root.append(el('div', { class: 'frame' }, this.picture), head, this.title, this.standing, this.alarms);
-    this.root.append(this.open);
+    const buttons = el('div', { class: 'buttons' }, this.open);
+    if (remove) {
+      const take = el('button', { type: 'button' }, text('Remove'));
+      take.setAttribute('aria-label', text('Remove {name} from the list', { name }));
+      take.onclick = remove;
+      buttons.append(take);
+    }
+    this.root.append(buttons);
   }
 
   show(s: StationView): void {
@@ -49,7 +68,7 @@ export class StationCard {
     setText(this.title, s.title);
     setText(this.clock, standing === 'away' || standing === 'idle' ? '' : clockText(s.timeS));
     setText(this.standing, standingText(s, standing));
-    const lines = s.alarms.map((a) => `${clockText(a.timeS)} ${a.text}`);
+    const lines = alarmLines(s.alarms);
     if (this.alarms.dataset.lines === lines.join('\n')) return;
     this.alarms.dataset.lines = lines.join('\n');
     this.alarms.replaceChildren(...lines.map((l) => el('li', {}, l)));

@@ -6,26 +6,29 @@ import type { Role } from '../options';
 import type { Stage } from '../stage';
 import { status } from '../status';
 import type { StereoMode } from '../stereo';
-import type { OwnMessage, RoomMessage } from './messages';
+import type { Drawing, RoomMessage } from './messages';
 import { Overlay } from './overlay';
 import { Pencil } from './pencil';
 import { Strokes } from './strokes';
 import { TalkPanel } from './talk_panel';
 import { Thumbnail } from './thumbnail';
+import { Voice } from './voice';
+import { VoicePanel } from './voice_panel';
 
 export class RoomDesk {
   readonly strokes = new Strokes();
   private readonly overlay = new Overlay();
   private readonly talk: TalkPanel;
   private readonly thumbnail: Thumbnail;
+  private readonly voice: { call: Voice; panel: VoicePanel } | null = null;
 
   constructor(
     private readonly stage: Stage,
     hudRoot: HTMLElement,
     link: () => Connection,
-    role: Role,
+    private readonly role: Role,
   ) {
-    const send = (m: OwnMessage) => {
+    const send = (m: Drawing) => {
       link().sendRoom(m);
       this.take(m);
     };
@@ -40,24 +43,42 @@ export class RoomDesk {
     });
     const column = hudRoot.querySelector(role === 'instructor' ? '.column.right' : '.column.left');
     column?.append(this.talk.root);
-    this.thumbnail = new Thumbnail(new URL('api/station/picture', location.href).href, role === 'trainee');
+    this.thumbnail = new Thumbnail(new URL('api/station/picture', location.href).href, role === 'trainee', () => {
+      status.thumbnails++;
+    });
+    if (role === 'observer') return;
+    const voice = new Voice(role, (m) => link().sendRoom(m));
+    this.voice = { call: voice, panel: new VoicePanel(voice, () => this.talk.show()) };
+    this.talk.below.append(this.voice.panel.root);
+    hudRoot.append(this.voice.panel.sign);
   }
 
   hear(m: RoomMessage): void {
     if (m.kind === 'say') this.talk.add(m.from, m.text);
+    else if (m.kind === 'voice') this.voice?.call.hear(m);
+    else if (m.kind === 'picture') this.thumbnail.want();
+    else if (m.kind === 'pages') this.others(this.role === 'instructor' ? m.trainees : m.instructors);
     else this.take(m);
   }
 
-  private take(m: OwnMessage): void {
+  /** How many pages of the other side there are. */
+  private others(count: number): void {
+    this.voice?.panel.setOthers(count);
+    if (count > 0 && this.role === 'trainee') this.talk.show();
+  }
+
+  private take(m: Drawing): void {
     this.strokes.take(m, performance.now());
     status.strokes = this.strokes.list.length;
-    if (m.kind === 'stroke') status.stroke_ms = performance.timeOrigin + performance.now();
+    const nowMs = performance.timeOrigin + performance.now();
+    if (m.kind === 'stroke') status.stroke_ms = nowMs;
+    if (m.kind === 'point') status.point_ms = nowMs;
   }
 
   /** After each picture. */
   draw(mode: StereoMode, presenting: boolean, nowMs: number): void {
     if (presenting) return; // a headset has pictures of its own
-    this.thumbnail.take(this.stage.canvas, nowMs);
+    this.thumbnail.take(this.stage.canvas);
     this.overlay.draw(this.strokes, this.stage.scope.camera, mode === 'sbs', nowMs);
   }
 }

@@ -4,14 +4,21 @@ import './room.css';
 import { el, setText } from '../hud/dom';
 import { text } from '../languages/text';
 import { StationCard } from './cards';
-import { standingOf, stationsOf } from './overview';
+import { FoundStations } from './found_stations';
+import { roomOf, standingOf, type StationView } from './overview';
+import { change, type NewStation, StationForm } from './station_form';
 
 const everyMs = 1000;
 const base = new URL('./', window.location.href);
 const say = el('p', { class: 'say', role: 'status' });
 const grid = el('div', { class: 'stations' });
-document.getElementById('room')!.append(el('header', { class: 'top' }, el('h1', {}, text('The room')), say), grid);
-const cards: StationCard[] = [];
+const cards = new Map<number, StationCard>();
+const form = new StationForm((s: NewStation) => change(new URL('api/room/stations', base), 'POST', s).then(lookAfter));
+const found = new FoundStations((s) => form.open(s.name, s.url));
+const add = el('button', { type: 'button', class: 'add' }, text('Add a station'));
+add.onclick = () => form.open();
+const top = el('header', { class: 'top' }, el('h1', {}, text('The room')), say, add);
+document.getElementById('room')!.append(top, grid, found.root, form.root);
 
 /** A window of its own is opened at the click, before the gateway has answered, or the browser would block it. */
 async function open(station: number): Promise<void> {
@@ -27,23 +34,46 @@ async function open(station: number): Promise<void> {
   }
 }
 
+async function remove(s: StationView): Promise<void> {
+  if (!window.confirm(text('Remove {name} from the list?', { name: s.name }))) return;
+  const why = await change(new URL(`api/room/stations?station=${s.number}`, base), 'DELETE').then(lookAfter);
+  if (why !== '') setText(say, why);
+}
+
+/** What was changed is shown at once. */
+async function lookAfter(why: string): Promise<string> {
+  if (why === '') await look().catch(() => undefined);
+  return why;
+}
+
+function cardOf(s: StationView): StationCard {
+  const known = cards.get(s.number);
+  if (known) return known;
+  const pictureUrl = (n: number) => new URL(`api/room/picture?station=${s.number}&number=${n}`, base).href;
+  const take = s.given ? null : () => void remove(s);
+  const card = new StationCard(s.name, pictureUrl, () => void open(s.number), take);
+  cards.set(s.number, card);
+  grid.append(card.root);
+  return card;
+}
+
 async function look(): Promise<void> {
   const answer = await fetch(new URL('api/room', base));
   if (!answer.ok) throw new Error(String(answer.status));
-  const stations = stationsOf(await answer.json());
-  stations.forEach((s, k) => {
-    if (!cards[k]) {
-      const pictureUrl = (n: number) => new URL(`api/room/picture?station=${k}&number=${n}`, base).href;
-      cards[k] = new StationCard(s.name, pictureUrl, () => void open(k));
-      grid.append(cards[k].root);
-    }
-    cards[k].show(s);
-  });
+  const room = roomOf(await answer.json());
+  const { stations } = room;
+  for (const s of stations) cardOf(s).show(s);
+  for (const [number, card] of cards) {
+    if (stations.some((s) => s.number === number)) continue;
+    card.root.remove();
+    cards.delete(number);
+  }
+  found.show(room);
   const good = stations.filter((s) => standingOf(s) !== 'away').length;
   setText(
     say,
     stations.length === 0
-      ? text('No stations are listed. Start this gateway with a list of stations.')
+      ? text('No stations are listed yet.')
       : text('{good} of {count, plural, one {# station answers} other {# stations answer}}', {
           good,
           count: stations.length,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The instructor's pencil and pointer: where the pen is on the picture becomes a place in the field.
 import * as THREE from 'three';
-import { mostPoints, type OwnMessage, type Point } from './messages';
+import { type Drawing, mostPoints, type Point } from './messages';
 
 export type PencilMode = 'off' | 'draw' | 'point';
 
@@ -29,7 +29,7 @@ export class Pencil {
   constructor(
     private readonly surface: HTMLElement,
     private readonly sight: Sight,
-    private readonly send: (m: OwnMessage) => void,
+    private readonly send: (m: Drawing) => void,
   ) {
     surface.addEventListener('pointerdown', (e) => this.begin(e));
     surface.addEventListener('pointermove', (e) => this.move(e));

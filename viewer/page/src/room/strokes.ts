@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the instructor draws and points at, in the coordinates of the scene. So each page shows it at the same place of
 // the field through its own microscope. Strokes fade by themselves.
-import type { OwnMessage, Point } from './messages';
+import type { Drawing, Point } from './messages';
 
 export const strokeLastsMs = 30_000;
 export const pointLastsMs = 1200;
@@ -19,7 +19,7 @@ export class Strokes {
   readonly list: Stroke[] = [];
   private pointed: { at: Point; ms: number } | null = null;
 
-  take(m: OwnMessage, nowMs: number): void {
+  take(m: Drawing, nowMs: number): void {
     if (m.kind === 'clear') this.list.length = 0;
     if (m.kind === 'point') this.pointed = { at: m.at, ms: nowMs };
     if (m.kind !== 'stroke') return;

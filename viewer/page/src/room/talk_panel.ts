@@ -19,6 +19,8 @@ export class TalkPanel {
   private readonly lines = el('ol', { class: 'talk-lines', 'aria-live': 'polite' });
   private readonly modes = new Map<PencilMode, HTMLButtonElement>();
   private mode: PencilMode = 'off';
+  /** For what belongs to talking and is made elsewhere. */
+  readonly below = el('div');
 
   constructor(
     private readonly role: Role,
@@ -29,13 +31,19 @@ export class TalkPanel {
     if (role === 'instructor') this.root.append(this.pencilRow());
     // A trainee who is alone needs none of it.
     this.root.hidden = role !== 'instructor';
+    this.root.append(this.below);
   }
 
   add(from: string, said: string): void {
-    this.root.hidden = false;
+    this.show();
     this.lines.append(el('li', { 'data-from': from }, el('b', {}, nameOf(from)), ` ${said}`));
     while (this.lines.childElementCount > mostLines) this.lines.firstElementChild!.remove();
     this.lines.scrollTop = this.lines.scrollHeight;
+  }
+
+  /** When somebody is there to talk with. */
+  show(): void {
+    this.root.hidden = false;
   }
 
   private form(): HTMLElement {
@@ -75,7 +83,8 @@ export class TalkPanel {
   }
 }
 
-function nameOf(role: string): string {
+/** Of a role, as a reader may see it. */
+export function nameOf(role: string): string {
   if (role === 'instructor') return text('Instructor');
   return role === 'trainee' ? text('Trainee') : text('Observer');
 }

@@ -1,26 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small picture of the trainee's page for the overview of stations, every few seconds. The gateway takes it only from
-// pages on its own machine; a page that is refused sends no more.
+// A small picture of the trainee's page for the overview of stations. It is read back only when the gateway asks for
+// one, since reading it back costs time of the page. The gateway takes it only from pages on its own machine; a page
+// that is refused sends no more.
 
-const everyMs = 3000;
 const wide = 320;
 
 export class Thumbnail {
-  private sentMs = -everyMs;
+  private wanted = false;
   private open: boolean;
   private readonly small = document.createElement('canvas');
 
   constructor(
     private readonly url: string,
     sends: boolean,
+    private readonly taken: () => void,
   ) {
     this.open = sends;
   }
 
+  /** The next picture is sent. */
+  want(): void {
+    this.wanted = true;
+  }
+
   /** Right after the picture was drawn, while the canvas still has it. */
-  take(canvas: HTMLCanvasElement, nowMs: number): void {
-    if (!this.open || nowMs - this.sentMs < everyMs || canvas.width === 0) return;
-    this.sentMs = nowMs;
+  take(canvas: HTMLCanvasElement): void {
+    if (!this.open || !this.wanted || canvas.width === 0) return;
+    this.wanted = false;
+    this.taken();
     const { small } = this;
     small.width = wide;
     small.height = Math.min(wide, Math.round((wide * canvas.height) / canvas.width));
@@ -34,7 +41,7 @@ export class Thumbnail {
       const answer = await fetch(this.url, { method: 'PUT', headers: { 'Content-Type': 'image/jpeg' }, body: jpeg });
       if (answer.status >= 400 && answer.status < 500) this.open = false;
     } catch {
-      // The gateway is away for a moment; the next picture tells.
+      // The gateway is away for a moment; it asks again.
     }
   }
 }

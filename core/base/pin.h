@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a PIN of a room is: six to twelve digits.
+#pragma once
+#include <string_view>
+
+namespace insula {
+
+inline constexpr std::string_view pin_digits = "0123456789";
+inline constexpr std::size_t fewest_pin_digits = 6, most_pin_digits = 12;
+
+inline bool is_pin(std::string_view text) {
+  return text.size() >= fewest_pin_digits && text.size() <= most_pin_digits &&
+         text.find_first_not_of(pin_digits) == text.npos;
+}
+
+}  // namespace insula
