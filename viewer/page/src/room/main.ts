@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Entry of the overview of a room.
+// The overview of a room: a card for each station, asked for once a second.
 import './room.css';
+import '../screens.css';
 import { el, setText } from '../hud/dom';
 import { text } from '../languages/text';
 import { StationCard } from './cards';
 import { standingOf, stationsOf } from './overview';
 
+document.title = `Insula: ${text('The room')}`;
 const everyMs = 1000;
 const base = new URL('./', window.location.href);
 const say = el('p', { class: 'say', role: 'status' });
