@@ -3,7 +3,8 @@
 // screen.
 import * as THREE from 'three';
 import { makeLensMaterial, type LensSettings } from './lens_material';
-import { anaglyphLeft, anaglyphRight, placeEye, type StereoMode } from './stereo';
+import { anaglyphLeft, anaglyphRight, placeEye } from './stereo';
+import type { StereoMode } from './stereo_modes';
 
 export type { LensSettings } from './lens_material';
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the address line may ask for: ?role= ?quality= ?nohud ?t= ?stereo= ?angle= ?icg ?nodepth ?ghost=
 
-import { clampAngle, type StereoMode, usualAngleDeg } from './stereo';
+import { clampAngle, type StereoMode, usualAngleDeg } from './stereo_modes';
 
 export type Role = 'trainee' | 'instructor' | 'observer';
 /** From the fastest picture to the best one. */

@@ -5,7 +5,7 @@ import { Microscope } from './camera';
 import { Lens } from './lens';
 import { makeEnvironment, plainRoom } from './materials/environment';
 import type { Level } from './quality';
-import type { StereoMode } from './stereo';
+import type { StereoMode } from './stereo_modes';
 import { text } from './languages/text';
 
 /** Share of the room's light that reaches the field. */

@@ -3,16 +3,6 @@
 // meet at the focus: what is in focus has no parallax, as with a microscope's common objective.
 import * as THREE from 'three';
 
-export type StereoMode = 'off' | 'sbs' | 'anaglyph' | 'xr';
-export const stereoModes: readonly StereoMode[] = ['off', 'sbs', 'anaglyph', 'xr'];
-
-/** Operating microscopes: 22-25 mm between the beams at a working distance of 250-300 mm. */
-export const usualAngleDeg = 5;
-export const angleRangeDeg = [1, 9] as const;
-
-export const clampAngle = (deg: number): number =>
-  Math.max(angleRangeDeg[0], Math.min(angleRangeDeg[1], Number.isFinite(deg) ? deg : usualAngleDeg));
-
 /** Distance between the eyes for a convergence angle at the focus. */
 export function eyeSeparation(focusM: number, angleRad: number): number {
   return 2 * focusM * Math.tan(angleRad / 2);

@@ -3,7 +3,7 @@
 // address line.
 import { type RulerMode, rulerModes } from './depth_ruler';
 import type { Headset } from './headset';
-import { clampAngle, type StereoMode } from './stereo';
+import { clampAngle, type StereoMode } from './stereo_modes';
 import { text } from './languages/text';
 
 export interface ViewOutputs {

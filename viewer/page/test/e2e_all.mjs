@@ -12,7 +12,7 @@ const checks = [
   'vessel',
   'data',
   'budget',
-  'voices',
+  'timbre',
   'sound',
   'replay',
   'start',

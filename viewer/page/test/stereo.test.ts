@@ -2,7 +2,8 @@
 // Geometry of the two eyes, by projecting points: no parallax at the focus, the known one before and behind it.
 import * as THREE from 'three';
 import { describe, expect, it } from 'vitest';
-import { anaglyphLeft, anaglyphRight, clampAngle, eyeSeparation, placeEye } from '../src/stereo';
+import { anaglyphLeft, anaglyphRight, eyeSeparation, placeEye } from '../src/stereo';
+import { clampAngle } from '../src/stereo_modes';
 
 const focus = 0.25;
 const angle = (5 * Math.PI) / 180;

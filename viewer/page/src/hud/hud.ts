@@ -29,7 +29,7 @@ import { Toasts } from './toasts';
 import { makeTouch, type TouchActions } from './touch';
 import { ToolList } from './tool_list';
 import { short } from './tray';
-import { type ViewActions, ViewMenu } from './view_menu';
+import { levelNames, type ViewActions, ViewMenu } from './view_menu';
 import { Vitals } from './vitals';
 import { said } from '../languages/said';
 import { text } from '../languages/text';
@@ -223,7 +223,7 @@ export class Hud {
 
   showMachine(f: RenderFrame | null, haptic: HapticStatus | null, fps: number, quality: string): void {
     this.haptic.show(haptic, f?.paused ?? false);
-    setText(this.machine, machineText(f, fps, quality));
+    setText(this.machine, machineText(f, fps, levelNames[quality] ?? quality));
     this.machine.classList.toggle('slow', !!f && f.step_ms > f.step_period_ms);
   }
 

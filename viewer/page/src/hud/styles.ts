@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The styles of the panels, in the order in which they override each other.
+import '../screens.css';
 import './hud.css';
 import './hands.css';
 import './panels.css';

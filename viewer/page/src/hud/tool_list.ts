@@ -50,6 +50,8 @@ export class ToolList {
   private offer: ToolCommand | null = null;
   private shown = '?';
 
+  private before: Element | null = null;
+
   constructor(
     private readonly run: (c: UserCommand) => void,
     private readonly mayDrive: boolean,
@@ -106,9 +108,10 @@ export class ToolList {
   toggle(): void {
     if (this.root.hidden) return;
     if (!this.list.hidden) {
-      this.close();
+      this.close(true);
       return;
     }
+    this.before = document.activeElement;
     this.list.hidden = false;
     this.head.setAttribute('aria-expanded', 'true');
     this.usable()[0]?.focus();
@@ -123,9 +126,10 @@ export class ToolList {
       el('span', { class: 'what' }, el('b', {}, said(tool.title)), el('small', {}, toolFacts(tool))),
       badge,
     );
-    button.onclick = () => {
+    button.onclick = (e) => {
       if (this.offer) this.run(ask(this.offer.holder.id, this.offer.command.name, tool.id));
-      this.close();
+      // A click without a pointer is one by key.
+      this.close(e.detail === 0);
     };
     return { tool, button, badge };
   }
@@ -145,11 +149,15 @@ export class ToolList {
     );
   }
 
-  private close(): void {
-    const hadFocus = this.root.contains(document.activeElement);
+  /** byKey: the focus goes back to where it was before. Who uses the mouse goes on in the field. */
+  private close(byKey = false): void {
+    const within = document.activeElement;
+    const hadFocus = this.root.contains(within);
     this.list.hidden = true;
     this.head.setAttribute('aria-expanded', 'false');
-    if (hadFocus) (document.activeElement as HTMLElement).blur();
+    if (!hadFocus || !(within instanceof HTMLElement)) return;
+    if (byKey && this.before instanceof HTMLElement) this.before.focus({ preventScroll: true });
+    else within.blur();
   }
 
   private usable(): HTMLButtonElement[] {
@@ -169,7 +177,7 @@ export class ToolList {
     else if (e.code === 'ArrowUp' && usable.length > 0) go(-1);
     else if (e.code === 'Escape' || e.code === 'KeyL') {
       e.preventDefault();
-      this.close();
+      this.close(true);
     } else if (/^Digit[1-9]$/.test(e.code)) this.entries[Number(e.code.slice(5)) - 1]?.button.click();
   }
 }

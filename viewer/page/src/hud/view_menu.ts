@@ -4,7 +4,7 @@ import { sentence, spoken } from '../bundle';
 import type { CommandData } from '../bundle_types';
 import type { RulerMode } from '../depth_ruler';
 import { levels } from '../quality';
-import { angleRangeDeg, stereoModes, type StereoMode } from '../stereo';
+import { angleRangeDeg, stereoModes, type StereoMode } from '../stereo_modes';
 import { ask, type UserCommand } from './commands';
 import { el, setText } from './dom';
 import { languageSelect } from '../languages/language_select';
@@ -29,7 +29,8 @@ const stereoNames: Record<StereoMode, string> = {
   xr: text('Headset'),
 };
 
-const levelNames: Record<QualityName, string> = {
+/** Names of the levels as the reader has them. */
+export const levelNames: Readonly<Record<string, string>> & Record<QualityName, string> = {
   draft: text('Draft'),
   low: text('Low'),
   medium: text('Medium'),

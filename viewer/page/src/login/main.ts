@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Entry of the login page: a PIN, or a ticket after the "#" of its address, admits this browser to the station.
+// The login page: a PIN, or a ticket after the "#" of its address, admits this browser to the station.
 import './login.css';
+import '../screens.css';
 import { el } from '../hud/dom';
 import { text } from '../languages/text';
 import { nextPage } from './next';
 
+document.title = `Insula: ${text('Log in')}`;
 const base = new URL('./', window.location.href);
 const next = nextPage(new URLSearchParams(window.location.search).get('next') ?? '', base);
 

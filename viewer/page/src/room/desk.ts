@@ -5,7 +5,7 @@ import type { Connection } from '../connection';
 import type { Role } from '../options';
 import type { Stage } from '../stage';
 import { status } from '../status';
-import type { StereoMode } from '../stereo';
+import type { StereoMode } from '../stereo_modes';
 import type { Drawing, RoomMessage } from './messages';
 import { Overlay } from './overlay';
 import { Pencil } from './pencil';

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Entry of the overview of a room.
+// The overview of a room: a card for each station, asked for once a second.
 import './room.css';
+import '../screens.css';
 import { el, setText } from '../hud/dom';
 import { text } from '../languages/text';
 import { StationCard } from './cards';
@@ -8,6 +9,7 @@ import { FoundStations } from './found_stations';
 import { roomOf, standingOf, type StationView } from './overview';
 import { change, type NewStation, StationForm } from './station_form';
 
+document.title = `Insula: ${text('The room')}`;
 const everyMs = 1000;
 const base = new URL('./', window.location.href);
 const say = el('p', { class: 'say', role: 'status' });

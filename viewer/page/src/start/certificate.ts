@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The certificate of a curriculum that was passed, as a page to print: certificate.html?person=NAME&curriculum=ID.
 import './certificate.css';
+import '../screens.css';
 import { el } from '../hud/dom';
 import { momentText } from '../languages/numbers';
 import { languageTag, text } from '../languages/text';
@@ -84,7 +85,9 @@ async function load(root: HTMLElement): Promise<void> {
 }
 
 const root = document.getElementById('certificate');
-if (root)
+if (root) {
+  document.title = `Insula: ${text('Record of training')}`;
   load(root).catch((e: unknown) => {
     root.replaceChildren(el('p', { role: 'alert' }, e instanceof Error ? e.message : String(e)));
   });
+}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Entry of the start page.
 import './start.css';
+import '../screens.css';
 import './course.css';
 import './settings.css';
 import { Api } from './api';

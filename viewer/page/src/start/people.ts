@@ -70,6 +70,9 @@ export class People {
     this.select.onchange = () => this.choose(this.select.value);
     this.add.onclick = () => this.open(true);
     cancel.onclick = () => this.open(false);
+    this.form.onkeydown = (e) => {
+      if (e.key === 'Escape') this.open(false);
+    };
     this.form.onsubmit = (e) => {
       e.preventDefault();
       void this.submit();
