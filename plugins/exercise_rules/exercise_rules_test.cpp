@@ -205,7 +205,9 @@ TEST_F(Rules, ForceIsThatOfOneHandOnOneBody) {
   for (int i = 0; i < 5; ++i) show();
   EXPECT_EQ(faults("force"), 1) << "the left hand counts as the right one";
   push(nullptr, 0);
-  report.contacts = {ContactPoint{lower, upper, Vec3::Zero(), Vec3::UnitZ(), 0, 5, Vec3::Zero()}};
+  ContactPoint between;
+  between.a = lower, between.b = upper, between.normal = Vec3::UnitZ(), between.normal_force = 5;
+  report.contacts = {between};
   for (int i = 0; i < 5; ++i) show();
   EXPECT_EQ(faults("force"), 1) << "tissue on tissue is nobody's fault";
 }
