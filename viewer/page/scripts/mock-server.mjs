@@ -74,6 +74,15 @@ function receive(lcm, state, data) {
 const framePacket = (channel, payload) =>
   Buffer.concat([Buffer.from([channel.length]), Buffer.from(channel, 'latin1'), payload]);
 
+/** Both arms where the tools of a frame are. */
+const deviceState = (lcm, frame) => {
+  const hand = frame.tool.slice(0, 2).map((t, k) => ({
+    ...{ ...lcm.hand_state_t.make(), hand: k, device: 'simulated', connected: true },
+    ...{ p_m: t.p_m, q: t.q },
+  }));
+  return lcm.device_state_t.encode({ ...lcm.device_state_t.make(), hands: hand.length, hand });
+};
+
 /** The engine's clock: events and frames sixty times a second, its state once. Returns the timer. */
 function play(scene, lcm, state, sockets, sceneInfo) {
   const broadcast = (channel, payload) => {
@@ -105,6 +114,7 @@ function play(scene, lcm, state, sockets, sceneInfo) {
     metrics.at_end = state.outcome !== '';
     metrics.json = JSON.stringify(theatre.metrics());
     broadcast('METRICS', lcm.metrics_t.encode(metrics));
+    broadcast('DEVICE_STATE', deviceState(lcm, f));
     sinceStatus += dt;
     if (sinceStatus < 1) return;
     sinceStatus = 0;

@@ -4,6 +4,7 @@ import './start.css';
 import '../screens.css';
 import './course.css';
 import './settings.css';
+import './devices.css';
 import { Api } from './api';
 import { StartPage } from './start_page';
 import { text } from '../languages/text';

@@ -9,6 +9,7 @@ import { type QualityName, qualityNames } from '../options';
 import { applyPalette, keepPalette, keptPalette, paletteNames } from '../palette';
 import type { PaletteName } from '../palette';
 import { readSettings, writeSettings } from '../sound/settings';
+import { DevicePanel } from './device_panel';
 
 function qualityText(name: QualityName): string {
   switch (name) {
@@ -33,6 +34,7 @@ export class Settings {
   readonly root = el('dialog', { class: 'progress settings', 'aria-labelledby': 'settings-title' });
   private readonly store = browserStore();
   private readonly sound = new SoundPanel({ sound: (change) => this.changeSound(change) }, '');
+  private readonly devices = new DevicePanel();
   private heard = readSettings(this.store);
 
   constructor() {
@@ -43,18 +45,14 @@ export class Settings {
       this.part(text('Sound'), this.sound.root),
       this.part(text('Picture quality'), this.quality()),
       this.part(text('Colours'), this.colours(), this.swatches()),
-      this.part(
-        text('Devices'),
-        el(
-          'p',
-          { class: 'hint' },
-          `${text('The haptic devices are those with which this session was started.')} `,
-          text('An exercise shows their state at each hand.'),
-        ),
-      ),
+      this.part(text('Devices'), this.devices.root),
       close,
     );
-    this.button.onclick = () => this.root.showModal();
+    this.button.onclick = () => {
+      this.root.showModal();
+      this.devices.open();
+    };
+    this.root.onclose = () => this.devices.close();
     this.sound.show(this.heard, false);
     applyPalette(keptPalette(this.store));
   }
