@@ -19,6 +19,7 @@ const checks = [
   'room',
   'voice',
   'access',
+  'keyboard',
   'certificate',
 ];
 const skipped = 77;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a picture costs, against the budget of a mid-range laptop's graphics (docs/trainee.md): triangles and draw
 // calls as the renderer counts them, and the bytes of all textures, targets and buffers as they are asked of WebGL.
+// And what the start page loads before anything is chosen.
 import assert from 'node:assert/strict';
 import { startMock } from '../scripts/mock-server.mjs';
 import { check, launch, patience } from './browser.mjs';
+import { answerStart, openStart } from './places.mjs';
 
 const budget = { triangles: 400_000, calls: 120, fixed_mb: 60, bytes_per_pixel: 160 };
 const view = { width: 480, height: 270 };
+/** Of the start page's scripts, unpacked. It draws no field. */
+const startScripts = 150_000;
 
 /** Keeps the size of everything that lies on the graphics card, by object, in window.__bytes. */
 function countBytes() {
@@ -38,6 +42,21 @@ function countBytes() {
   wrap('bufferData', (a) => put(a[0], typeof a[1] === 'number' ? a[1] : (a[1]?.byteLength ?? 0)));
 }
 
+/** Scripts of the start page, until its cards are there. */
+async function startPage(browser, url) {
+  const context = await browser.newContext();
+  await answerStart(context);
+  const page = await context.newPage();
+  const scripts = [];
+  page.on('response', (r) => r.request().resourceType() === 'script' && scripts.push(r));
+  await openStart(page, url);
+  const sizes = await Promise.all(scripts.map(async (r) => (await r.body()).length));
+  const sum = sizes.reduce((a, b) => a + b, 0);
+  assert.ok(sum > 20_000 && sum < startScripts, `${sum} bytes of scripts on the start page`);
+  check(`the start page loads ${(sum / 1000).toFixed(0)} kB of scripts; ${startScripts / 1000} allowed`);
+  await context.close();
+}
+
 /** --url: a running gateway instead of the mock. */
 const at = process.argv.indexOf('--url');
 const mock = at < 0 ? await startMock({ port: 0, startS: 3 }) : null;
@@ -66,6 +85,7 @@ try {
   check(
     `${(cost.bytes / 1e6).toFixed(1)} MB on the card for ${cost.pixels} pixels; ${(most / 1e6).toFixed(0)} allowed`,
   );
+  if (mock) await startPage(browser, mock.url);
 } finally {
   await browser.close();
   await mock?.stop();

@@ -1,48 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pages as the checks of languages, access and layout open them: the session's page and the page of recorded
-// sessions from the mock server, the start page with the answers of a gateway that are written here.
+// The pages as the checks of languages, access and keys open them: the session's page and the page of recorded
+// sessions from the mock server, the others with the answers of a gateway that are written in place_answers.mjs.
+import { readFileSync } from 'node:fs';
 import { startMock } from '../scripts/mock-server.mjs';
 import { patience } from './browser.mjs';
+import { placeAnswers } from './place_answers.mjs';
+import { pictureOf } from './shipped_exercises.mjs';
 
-const run = {
-  uuid: 'a',
-  scene: 'scenes/training/3_clipping.xml',
-  title: 'Clipping',
-  mode: 'practice',
-  began_ms: 1_770_000_000_000,
-  duration_s: 185,
-  state: 'failed',
-  goals: 3,
-  goals_done: 1,
-  faults: 2,
-  recording: 'clipping',
-};
-const exercise = (scene, group, title, text) => ({ scene, group, title, text, picture: false });
-const points = [3.4, 2.9, 2.2].map((value, k) => ({
-  uuid: `${k}`,
-  began_ms: 1e12 + k,
-  mode: 'test',
-  done: true,
-  value,
-}));
-const curve = { metric: 'a', hand: 'left', text: 'Largest force', unit: 'N', better: 'low', digits: 2, points };
+/** What a page tells the gateway changes what is answered later. */
+function take(answers, what, body) {
+  if (what === 'people') answers.people.push(body);
+  if (what === 'choose') Object.assign(answers.state, { state: 'running', text: '' }, body);
+}
 
-const answers = {
-  exercises: [
-    exercise('scenes/skills/1_touch_targets.xml', 'skills', 'Touch targets in depth', 'Look at the shadow.'),
-    exercise(run.scene, 'training', 'Clipping', 'Close the neck and keep both branches open'),
-    exercise('scenes/training/4_rupture.xml', 'training', 'Rupture', 'Stop the bleeding'),
-  ],
-  people: [{ pseudonym: 'P07', role: 'resident', handedness: 'right', year: 3 }],
-  history: [{ scene: run.scene, title: run.title, runs: 2, last: run, best: { ...run, uuid: 'b', state: 'done' } }],
-  curves: [curve],
-  state: { scene: run.scene, person: '', state: 'running', text: '' },
-};
-
-/** A gateway's answers for the start page of the mock server, which has none. */
+/** A gateway's answers for the pages of the mock server, which has none. */
 export async function answerStart(context) {
-  await context.route('**/api/*', (route) => {
-    const what = new URL(route.request().url()).pathname.split('/').pop();
+  const answers = placeAnswers();
+  const pictures = new Map(answers.exercises.map((e) => [e.scene, pictureOf(e.scene)]));
+  await context.route('**/api/**', (route) => {
+    const url = new URL(route.request().url());
+    const what = url.pathname.split('/').pop();
+    const picture = what === 'picture' && pictures.get(url.searchParams.get('scene'));
+    if (route.request().method() === 'POST') take(answers, what, route.request().postDataJSON());
+    if (picture) return route.fulfill({ contentType: 'image/jpeg', body: readFileSync(picture) });
     return route.fulfill({ json: answers[what] ?? {} });
   });
   await context.route('**/sessions', (route) => route.fulfill({ json: [{ name: 'clipping', bytes: 2_500_000 }] }));

@@ -10,7 +10,7 @@ export interface Live {
   lamps: boolean[];
 }
 
-/** A hand's way that fills a bar, m. */
+/** Displacement of a hand that fills a bar, m. */
 const fullM = 0.02;
 
 const within = (x: number): number => (Number.isFinite(x) ? Math.max(-1, Math.min(1, x)) : 0);
