@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "core/testing/temp_folder.h"
 #include "training/progress/certificate.h"
 #include "training/progress/curriculum_json.h"
 #include "viewer/gateway/learning_json.h"
@@ -39,20 +40,17 @@ Curriculum small_curriculum() {
 class CurriculumApiTest : public testing::Test {
  protected:
   CurriculumApiTest() {
-    std::string name = (fs::temp_directory_path() / "insula_curricula_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    store_.emplace(folder_ / "training.sqlite");
+    store_.emplace(folder_.path() / "training.sqlite");
     training::Person person;
     person.pseudonym = "P07";
     store_->add(person);
   }
-  ~CurriculumApiTest() override { fs::remove_all(folder_); }
 
-  fs::path file() const { return folder_ / "curricula.json"; }
+  fs::path file() const { return folder_.path() / "curricula.json"; }
   void write_list() const {
     const json list{
         {"version", "insula 1"},
-        {"project", folder_},
+        {"project", folder_.path()},
         {"scenes", {{"a.xml", {{"scene", "scenes/a.xml"}, {"title", "A"}}}}},
         {"curricula",
          {{{"id", "small"}, {"problem", ""}, {"curriculum", json(training::curriculum_json(small_curriculum()))}},
@@ -73,7 +71,7 @@ class CurriculumApiTest : public testing::Test {
     return json::parse(a.progress(*store_, person).json);
   }
 
-  fs::path folder_;
+  test_files::TempFolder folder_;
   std::optional<training::Store> store_;
   int wanted_ = 0;
 };
@@ -173,7 +171,7 @@ TEST_F(CurriculumApiTest, KnowsTheLevelOfAMetricFromACurriculumOrFromSpecialists
   c.modules[1].tasks[0].gates.push_back(gate);
   std::ofstream(file()) << json{
       {"version", ""},
-      {"project", folder_},
+      {"project", folder_.path()},
       {"scenes", {{"a.xml", {{"scene", "scenes/a.xml"}, {"title", "A"}}}}},
       {"curricula", {{{"id", "c"}, {"problem", ""}, {"curriculum", json(training::curriculum_json(c))}}}}};
   auto a = api();

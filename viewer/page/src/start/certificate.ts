@@ -8,13 +8,10 @@ import { languageTag, text } from '../languages/text';
 import { Api } from './api';
 import { certificateOf } from './certificate_api';
 import type { CertifiedTask, Certificate } from './certificate_api';
-import { conditionText, rowText } from './gate_words';
-import type { Condition } from './gate_words';
+import { gateText } from './gate_words';
 import { resultText } from './wording';
 
 const day = (ms: number): string => new Date(ms).toLocaleDateString(languageTag(), { dateStyle: 'long' });
-
-const gateText = (c: Condition): string => [conditionText(c), rowText(c)].filter((w) => w !== '').join(', ');
 
 function taskRow(t: CertifiedTask): HTMLElement {
   const attempts = text('{attempts, plural, one {# attempt} other {# attempts}} to the level', {

@@ -6,7 +6,7 @@ import { languageTag, text } from '../languages/text';
 import type { Api } from './api';
 import { askCourse, askCurricula, follow } from './course_api';
 import type { Course, CourseModule, CourseTask, Curricula, Gate, Next, Standing, Terms } from './course_api';
-import { conditionText, rowText } from './gate_words';
+import { gateText } from './gate_words';
 import { resultText } from './wording';
 
 const againMs = 700;
@@ -37,9 +37,8 @@ export function standingText(standing: Standing): string {
 export const dayText = (ms: number): string => new Date(ms).toLocaleDateString(languageTag());
 
 function gateLine(gate: Gate): HTMLElement {
-  const words = [conditionText(gate.condition), rowText(gate.condition)].filter((w) => w !== '').join(', ');
   const done = gate.needed > 1 ? ` (${text('{done} of {needed}', { done: gate.inARow, needed: gate.needed })})` : '';
-  return el('li', { 'data-met': String(gate.met) }, `${gate.met ? '✓' : '○'} ${words}${done}`);
+  return el('li', { 'data-met': String(gate.met) }, `${gate.met ? '✓' : '○'} ${gateText(gate.condition)}${done}`);
 }
 
 /** Why this comes next. */

@@ -59,14 +59,14 @@ function faultsText(c: Condition): string {
   return c.faults.length > 0 ? text('None of these faults: {faults}', { faults }) : text('No faults');
 }
 
+/** A metric with its hand, unless it is of both. */
+export function metricName(metric: string, hand: string): string {
+  if (hand === 'left') return text('{metric}, left hand', { metric });
+  return hand === 'right' ? text('{metric}, right hand', { metric }) : metric;
+}
+
 function metricText(c: Condition): string {
-  const metric = said(c.metric);
-  const name =
-    c.hand === 'left'
-      ? text('{metric}, left hand', { metric })
-      : c.hand === 'right'
-        ? text('{metric}, right hand', { metric })
-        : metric;
+  const name = metricName(said(c.metric), c.hand);
   const limits = limitsText(c);
   return c.group === ''
     ? text('{name}: {limits}', { name, limits })
@@ -89,3 +89,6 @@ export function rowText({ inARow, withinDays }: Condition): string {
       })
     : text('{times} times in a row', { times: inARow });
 }
+
+/** All that a gate asks for. */
+export const gateText = (c: Condition): string => [conditionText(c), rowText(c)].filter((w) => w !== '').join(', ');

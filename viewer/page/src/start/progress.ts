@@ -5,12 +5,8 @@ import type { Api, Curve, Exercise } from './api';
 import { curvePicture } from './curve';
 import { fixed, quantity } from '../languages/numbers';
 import { text } from '../languages/text';
+import { metricName } from './gate_words';
 import { learningBox } from './learning';
-
-function nameOf(c: Curve): string {
-  if (c.hand === 'left') return text('{metric}, left hand', { metric: c.text });
-  return c.hand === 'right' ? text('{metric}, right hand', { metric: c.text }) : c.text;
-}
 
 /** Curves worth a look: known direction, and values that differ. Largest change between first and last third first. */
 export function ranked(curves: readonly Curve[]): Curve[] {
@@ -34,7 +30,7 @@ function curveBox(c: Curve): HTMLElement {
   const values = c.points.map((p) => p.value);
   const best = c.better === 'high' ? Math.max(...values) : Math.min(...values);
   const last = values[values.length - 1]!;
-  const name = nameOf(c);
+  const name = metricName(c.text, c.hand);
   const numbers = { last: number(c, last), best: number(c, best) };
   return el(
     'li',
