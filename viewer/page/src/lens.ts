@@ -2,6 +2,7 @@
 // Draws the scene through the microscope: one eye or two, each into its own picture, then through the lens onto the
 // screen.
 import * as THREE from 'three';
+import { DepthProbe } from './depth_probe';
 import { makeLensMaterial, type LensSettings } from './lens_material';
 import { anaglyphLeft, anaglyphRight, placeEye } from './stereo';
 import type { StereoMode } from './stereo_modes';
@@ -83,8 +84,10 @@ export class Lens {
   private settings: LensSettings = { occlusion: false, depthOfField: false, samples: 0 };
   private seenBy: THREE.PerspectiveCamera | null = null;
   private mode: StereoMode = 'off';
+  private readonly probe: DepthProbe;
 
   constructor(private readonly renderer: THREE.WebGLRenderer) {
+    this.probe = new DepthProbe(renderer);
     this.quad = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.eyes[0]!.material);
     this.quad.frustumCulled = false;
     this.scene.add(this.quad);
@@ -143,30 +146,12 @@ export class Lens {
   }
 
   /** Scene point under a pixel, read back from the last picture's depth; null where nothing was drawn. */
-  pick(x: number, y: number, wide: number, high: number): THREE.Vector3 | null {
+  async pick(x: number, y: number, wide: number, high: number): Promise<THREE.Vector3 | null> {
     // Side by side, each half is a whole picture.
     const across = this.mode === 'sbs' ? ((x / wide) * 2) % 1 : x / wide;
-    const uv = new THREE.Vector2(across, 1 - y / high);
     const depth = this.eyes[this.mode === 'sbs' || this.mode === 'anaglyph' ? 1 : 0]!.depth;
     if (!depth || !this.seenBy) return null;
-    const one = new THREE.WebGLRenderTarget(1, 1, { type: THREE.FloatType });
-    const probe = new THREE.ShaderMaterial({
-      uniforms: { depth_map: { value: depth }, at: { value: uv } },
-      vertexShader: 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }',
-      fragmentShader: `uniform highp sampler2D depth_map; uniform vec2 at;
-        void main() { gl_FragColor = vec4(texture2D(depth_map, at).x, 0.0, 0.0, 1.0); }`,
-      depthTest: false,
-    });
-    this.quad.material = probe;
-    this.renderer.setRenderTarget(one);
-    this.renderer.render(this.scene, this.flat);
-    const texel = new Float32Array(4);
-    this.renderer.readRenderTargetPixels(one, 0, 0, 1, 1, texel);
-    this.renderer.setRenderTarget(null);
-    probe.dispose();
-    one.dispose();
-    if (!(texel[0]! > 0 && texel[0]! < 0.99999)) return null;
-    return new THREE.Vector3(uv.x * 2 - 1, uv.y * 2 - 1, texel[0]! * 2 - 1).unproject(this.seenBy);
+    return this.probe.read(depth, this.seenBy, new THREE.Vector2(across, 1 - y / high));
   }
 
   private take(eye: number, scene: THREE.Scene, camera: THREE.PerspectiveCamera, focus: number, scale: number): void {

@@ -178,7 +178,7 @@ const controllers = new ControllerHands(hands);
 listenForHands(hands, {
   ...{ canvas, scope, hud, hudRoot, toolPose, changed: tellHands },
   focusAt: (x, y) => {
-    if (world) stage.focusAt(x, y);
+    if (world) void stage.focusAt(x, y);
   },
   togglePause: () => run({ command: playback.latest?.paused ? 'resume' : 'pause', argument: '' }),
 });
@@ -276,7 +276,7 @@ function draw(now: number): void {
   if (presenting)
     headset.render(scene, scope.camera, scope.distance, angle, headsetLines(reading.state?.timers ?? [], spokenTo));
   else stage.render(modes.stereo, angle);
-  room.draw(modes.stereo, presenting, now);
+  room.draw(modes.stereo, presenting);
   tellPicture({ presenting, stage, graphics, frames: playback.frames, refused: link.refused });
   status.problems = [...(reading.problem ? [reading.problem] : []), ...(world?.problems ?? [])];
   status.ready = world !== null && playback.frames > 0;

@@ -139,14 +139,14 @@ export class Stage {
     return this.renderer.getContext() as WebGL2RenderingContext;
   }
 
-  /** The point of the scene under the pointer; null where there is nothing. */
-  pick(x: number, y: number): THREE.Vector3 | null {
+  /** The point of the scene under the pointer, once the graphics card tells; null where there is nothing. */
+  pick(x: number, y: number): Promise<THREE.Vector3 | null> {
     return this.lens.pick(x, y, this.canvas.clientWidth, this.canvas.clientHeight);
   }
 
   /** The point under the pointer becomes the focus. */
-  focusAt(x: number, y: number): void {
-    const point = this.pick(x, y);
+  async focusAt(x: number, y: number): Promise<void> {
+    const point = await this.pick(x, y);
     if (point) this.scope.focus(point);
   }
 }

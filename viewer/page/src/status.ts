@@ -32,8 +32,6 @@ export const status = {
   thumbnails: 0,
   /** How it stands with talking by voice, and the sound that came from the other side (sum of its energy). */
   voice: { state: 'off', energy: 0 },
-  /** When a pointer was last sent or heard here, ms since 1970. */
-  point_ms: 0,
   /** Strokes over the picture; when the last part of one was sent or heard here, ms since 1970. */
   strokes: 0,
   stroke_ms: 0,

@@ -35,8 +35,8 @@ export function controlMicroscope(stage: Stage): void {
     },
     { passive: false },
   );
-  canvas.addEventListener('dblclick', (e) =>
-    stage.focusAt(e.clientX - canvas.offsetLeft, e.clientY - canvas.offsetTop),
-  );
+  canvas.addEventListener('dblclick', (e) => {
+    void stage.focusAt(e.clientX - canvas.offsetLeft, e.clientY - canvas.offsetTop);
+  });
   canvas.addEventListener('contextmenu', (e) => e.preventDefault());
 }

@@ -20,6 +20,8 @@ export class RoomDesk {
   private readonly overlay = new Overlay();
   private readonly talk: TalkPanel;
   private readonly thumbnail: Thumbnail;
+  private sideBySide = false;
+  private presenting = false;
   private readonly voice: { call: Voice; panel: VoicePanel } | null = null;
 
   constructor(
@@ -33,7 +35,7 @@ export class RoomDesk {
       this.take(m);
     };
     const { canvas, scope } = stage;
-    canvas.after(this.overlay.canvas);
+    canvas.after(this.overlay.canvas, ...this.overlay.rings);
     const sight = { camera: scope.camera, focus: () => scope.target, pick: (x: number, y: number) => stage.pick(x, y) };
     const pencil = new Pencil(this.overlay.canvas, sight, send);
     this.talk = new TalkPanel(role, {
@@ -69,16 +71,22 @@ export class RoomDesk {
 
   private take(m: Drawing): void {
     this.strokes.take(m, performance.now());
+    this.show();
     status.strokes = this.strokes.list.length;
-    const nowMs = performance.timeOrigin + performance.now();
-    if (m.kind === 'stroke') status.stroke_ms = nowMs;
-    if (m.kind === 'point') status.point_ms = nowMs;
+    if (m.kind === 'stroke') status.stroke_ms = performance.timeOrigin + performance.now();
   }
 
   /** After each picture. */
-  draw(mode: StereoMode, presenting: boolean, nowMs: number): void {
-    if (presenting) return; // a headset has pictures of its own
-    this.thumbnail.take(this.stage.canvas);
-    this.overlay.draw(this.strokes, this.stage.scope.camera, mode === 'sbs', nowMs);
+  draw(mode: StereoMode, presenting: boolean): void {
+    this.sideBySide = mode === 'sbs';
+    this.presenting = presenting;
+    if (!presenting) this.thumbnail.take(this.stage.canvas);
+    this.show();
+  }
+
+  /** At once, not only with the next picture: a page that draws slowly would show late where somebody points. */
+  private show(): void {
+    if (this.presenting) return; // a headset has pictures of its own
+    this.overlay.draw(this.strokes, this.stage.scope.camera, this.sideBySide, performance.now());
   }
 }
