@@ -7,6 +7,7 @@
 #include <avahi-common/error.h>
 #include <avahi-common/malloc.h>
 #include <avahi-common/thread-watch.h>
+#include <avahi-common/timeval.h>
 #include <avahi-core/core.h>
 #include <avahi-core/log.h>
 #include <avahi-core/lookup.h>
@@ -18,6 +19,7 @@
 #include <cstring>
 #include <mutex>
 #include <tuple>
+#include <utility>
 
 #include "core/base/system_random.h"
 #include "core/base/text.h"
@@ -29,6 +31,7 @@ namespace asio = boost::asio;
 
 constexpr std::size_t longest_name = AVAHI_LABEL_MAX - 1;  // of a service: 63 bytes
 constexpr unsigned most_records = 1024;                    // kept of each network
+constexpr unsigned look_again_ms = 5000;                   // whether the own addresses have changed
 constexpr std::size_t most_followed =
     4 * ServiceDiscovery::most_found;  // a station is found once by network and protocol
 
@@ -62,13 +65,19 @@ asio::ip::address address_of(const sockaddr* socket) {
   return asio::ip::address_v6(bytes);
 }
 
-/// Index of the interface with an address; all interfaces if it is none of this machine.
-AvahiIfIndex interface_with(const asio::ip::address& address) {
+using OwnAddresses = std::vector<std::pair<AvahiIfIndex, asio::ip::address>>;
+
+/// By which other machines reach a station that listens there, with their interfaces.
+OwnAddresses own_addresses(const asio::ip::address& listen) {
+  OwnAddresses out;
   ifaddrs* list = nullptr;
-  AvahiIfIndex out = AVAHI_IF_UNSPEC;
   if (getifaddrs(&list) != 0) return out;
-  for (const ifaddrs* i = list; i != nullptr && out == AVAHI_IF_UNSPEC; i = i->ifa_next)
-    if (address_of(i->ifa_addr) == address) out = AvahiIfIndex(if_nametoindex(i->ifa_name));
+  for (const ifaddrs* i = list; i != nullptr; i = i->ifa_next) {
+    const asio::ip::address address = address_of(i->ifa_addr);
+    const bool heard = listen.is_unspecified() ? listen.is_v6() || address.is_v4() : listen == address;
+    if (heard && !address.is_unspecified() && !address.is_loopback())
+      out.emplace_back(AvahiIfIndex(if_nametoindex(i->ifa_name)), address);
+  }
   freeifaddrs(list);
   return out;
 }
@@ -102,12 +111,28 @@ std::optional<StationAddress> read_service(const std::string& name, const asio::
   return StationAddress{name, address.to_string(), std::to_string(port), tls == "1", {}};
 }
 
+std::vector<StationAddress> distinct_stations(const std::vector<HeardStation>& heard, std::size_t most) {
+  std::map<std::pair<std::string, std::string>, StationAddress> by_machine;
+  for (const HeardStation& one : heard) {
+    const auto [place, added] = by_machine.try_emplace({one.machine, one.address.port}, one.address);
+    const bool plainer = one.address.host.find(':') == std::string::npos;
+    if (!added && plainer) place->second = one.address;
+  }
+  std::vector<StationAddress> out;
+  for (auto& [machine, station] : by_machine) out.push_back(std::move(station));
+  std::sort(out.begin(), out.end(), [](const StationAddress& a, const StationAddress& b) {
+    return std::pair(a.name, a.host_and_port()) < std::pair(b.name, b.host_and_port());
+  });
+  if (out.size() > most) out.resize(most);
+  return out;
+}
+
 struct ServiceDiscovery::Impl {
   /// Of one service on one network by one protocol.
   using Key = std::tuple<AvahiIfIndex, AvahiProtocol, std::string>;
   struct Followed {
     AvahiSServiceResolver* resolver = nullptr;
-    std::optional<StationAddress> station;  ///< nothing: it is not known yet, or it is no station
+    std::optional<HeardStation> station;  ///< nothing: it is not known yet, or it is no station
   };
 
   ~Impl() {
@@ -120,10 +145,11 @@ struct ServiceDiscovery::Impl {
   std::string start();
   void publish();
   void found(AvahiBrowserEvent event, const Key& key, const char* domain);
-  void resolved(const Key& key, std::optional<StationAddress> station);
+  void resolved(const Key& key, std::optional<HeardStation> station);
 
   static void on_server(AvahiServer* s, AvahiServerState state, void* self);
   static void on_group(AvahiServer* s, AvahiSEntryGroup* g, AvahiEntryGroupState state, void* self);
+  static void on_time(AvahiTimeout* timeout, void* self);
   static void on_browser(AvahiSServiceBrowser* b, AvahiIfIndex interface, AvahiProtocol protocol,
                          AvahiBrowserEvent event, const char* name, const char* type, const char* domain,
                          AvahiLookupResultFlags flags, void* self);
@@ -137,6 +163,7 @@ struct ServiceDiscovery::Impl {
   AvahiSEntryGroup* group = nullptr;
   AvahiSServiceBrowser* browser = nullptr;
   std::optional<Announcement> own;
+  OwnAddresses addresses;  ///< that are announced
   mutable std::mutex mutex;
   std::map<Key, Followed> followed;  ///< `station` is read by other threads, under the mutex
 };
@@ -151,8 +178,7 @@ std::string ServiceDiscovery::Impl::start() {
   const std::string host = new_host_name();
   config.host_name = avahi_strdup(host.c_str());
   config.use_ipv6 = config.publish_aaaa_on_ipv4 = !own || own->listen.is_v6();
-  config.publish_addresses = own && own->listen.is_unspecified();
-  config.publish_workstation = config.publish_hinfo = config.publish_domain = 0;
+  config.publish_addresses = config.publish_workstation = config.publish_hinfo = config.publish_domain = 0;
   config.enable_wide_area = config.enable_reflector = config.disallow_other_stacks = 0;
   config.check_response_ttl = 1;  // what was routed from another network is not taken
   config.disable_publishing = !own;
@@ -162,25 +188,43 @@ std::string ServiceDiscovery::Impl::start() {
   if (poll != nullptr) server = avahi_server_new(avahi_threaded_poll_get(poll), &config, on_server, this, &error);
   avahi_server_config_free(&config);
   if (server == nullptr) return avahi_strerror(error);
+  timeval next;
+  const AvahiPoll* api = avahi_threaded_poll_get(poll);
+  if (own) api->timeout_new(api, avahi_elapse_time(&next, look_again_ms, 0), on_time, this);
   return avahi_threaded_poll_start(poll) < 0 ? "there is no thread for it" : "";
 }
 
-/// Puts the own service into the group, which must be empty.
+/// Puts the own service into the group, which must be empty. The addresses belong to the group and not to the server,
+/// which would also claim the way back from address to name. On one machine only one program can have that:
+/// avahi-daemon, or another station.
 void ServiceDiscovery::Impl::publish() {
   if (group == nullptr) group = avahi_s_entry_group_new(server, on_group, this);
   if (group == nullptr) return;
-  const bool everywhere = own->listen.is_unspecified();
-  const AvahiIfIndex interface = everywhere ? AVAHI_IF_UNSPEC : interface_with(own->listen);
   const AvahiProtocol protocol = own->listen.is_v4() ? AVAHI_PROTO_INET : AVAHI_PROTO_UNSPEC;
-  if (!everywhere) {
+  addresses = own_addresses(own->listen);
+  for (const auto& [interface, each] : addresses) {
     AvahiAddress address;
-    avahi_address_parse(own->listen.to_string().c_str(), AVAHI_PROTO_UNSPEC, &address);
-    avahi_server_add_address(server, group, interface, protocol, AVAHI_PUBLISH_NO_REVERSE,
-                             avahi_server_get_host_name_fqdn(server), &address);
+    if (avahi_address_parse(each.to_string().c_str(), AVAHI_PROTO_UNSPEC, &address) != nullptr)
+      avahi_server_add_address(server, group, interface, protocol, AVAHI_PUBLISH_NO_REVERSE,
+                               avahi_server_get_host_name_fqdn(server), &address);
   }
-  avahi_server_add_service(server, group, interface, protocol, AvahiPublishFlags(0), own->name.c_str(), type, nullptr,
-                           nullptr, own->port, "txtvers=1", own->encrypted ? "tls=1" : "tls=0", "path=/", nullptr);
+  const bool one = !own->listen.is_unspecified() && !addresses.empty();
+  avahi_server_add_service(server, group, one ? addresses.front().first : AVAHI_IF_UNSPEC, protocol,
+                           AvahiPublishFlags(0), own->name.c_str(), type, nullptr, nullptr, own->port, "txtvers=1",
+                           own->encrypted ? "tls=1" : "tls=0", "path=/", nullptr);
   avahi_s_entry_group_commit(group);
+}
+
+/// A network may come or change after the start.
+void ServiceDiscovery::Impl::on_time(AvahiTimeout* timeout, void* self) {
+  Impl& impl = *static_cast<Impl*>(self);
+  if (impl.group != nullptr && avahi_server_get_state(impl.server) == AVAHI_SERVER_RUNNING &&
+      own_addresses(impl.own->listen) != impl.addresses) {
+    avahi_s_entry_group_reset(impl.group);
+    impl.publish();
+  }
+  timeval next;
+  avahi_threaded_poll_get(impl.poll)->timeout_update(timeout, avahi_elapse_time(&next, look_again_ms, 0));
 }
 
 /// May be called before avahi_server_new() has returned.
@@ -231,15 +275,17 @@ void ServiceDiscovery::Impl::found(AvahiBrowserEvent event, const Key& key, cons
 
 void ServiceDiscovery::Impl::on_resolver(AvahiSServiceResolver*, AvahiIfIndex interface, AvahiProtocol protocol,
                                          AvahiResolverEvent event, const char* name, const char*, const char*,
-                                         const char*, const AvahiAddress* address, std::uint16_t port,
+                                         const char* host, const AvahiAddress* address, std::uint16_t port,
                                          AvahiStringList* fields, AvahiLookupResultFlags, void* self) {
   const bool there = event == AVAHI_RESOLVER_FOUND && address != nullptr;
-  static_cast<Impl*>(self)->resolved(
-      {interface, protocol, name},
-      there ? read_service(name, address_of(*address), port, fields_of(fields)) : std::nullopt);
+  std::optional<HeardStation> station;
+  if (there)
+    if (const auto read = read_service(name, address_of(*address), port, fields_of(fields)))
+      station = HeardStation{*read, host == nullptr ? "" : host};
+  static_cast<Impl*>(self)->resolved({interface, protocol, name}, std::move(station));
 }
 
-void ServiceDiscovery::Impl::resolved(const Key& key, std::optional<StationAddress> station) {
+void ServiceDiscovery::Impl::resolved(const Key& key, std::optional<HeardStation> station) {
   const std::lock_guard lock(mutex);
   const auto known = followed.find(key);
   if (known != followed.end()) known->second.station = std::move(station);
@@ -267,18 +313,11 @@ std::string ServiceDiscovery::browse() {
 }
 
 std::vector<StationAddress> ServiceDiscovery::found() const {
-  std::map<std::string, StationAddress> by_name;
+  std::vector<HeardStation> heard;
   const std::lock_guard lock(impl_->mutex);
-  for (const auto& [key, entry] : impl_->followed) {
-    if (!entry.station) continue;
-    const auto [place, added] = by_name.emplace(entry.station->name, *entry.station);
-    const bool plainer = entry.station->host.find(':') == std::string::npos;  // IPv4 is the shorter to read
-    if (!added && plainer) place->second = *entry.station;
-  }
-  std::vector<StationAddress> out;
-  for (auto& [name, station] : by_name)
-    if (out.size() < most_found) out.push_back(std::move(station));
-  return out;
+  for (const auto& [key, entry] : impl_->followed)
+    if (entry.station) heard.push_back(*entry.station);
+  return distinct_stations(heard, most_found);
 }
 
 }  // namespace insula::gateway

@@ -31,6 +31,16 @@ using ServiceFields = std::map<std::string, std::string>;
 std::optional<StationAddress> read_service(const std::string& name, const boost::asio::ip::address& address,
                                            std::uint16_t port, const ServiceFields& fields);
 
+/// What was heard of one station on one network by one protocol.
+struct HeardStation {
+  StationAddress address;
+  std::string machine;  ///< name of the host that its announcement gives: each station has its own
+};
+
+/// Each station once, by name and then by address. One that was heard several times has its IPv4 address, which is the
+/// shorter to read. Two of one name, which may be in two networks, stay two. At most `most`.
+std::vector<StationAddress> distinct_stations(const std::vector<HeardStation>& heard, std::size_t most);
+
 class ServiceDiscovery {
  public:
   static constexpr const char* type = "_insula._tcp";

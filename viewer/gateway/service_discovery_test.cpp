@@ -4,10 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "core/bus/mem_bus.h"
+#include "core/testing/temp_folder.h"
 #include "tests/process/network_rooms.h"
 #include "viewer/gateway/client_for_test.h"
 #include "viewer/gateway/gateway.h"
@@ -39,6 +43,21 @@ TEST(ServiceDiscovery, ShowsOnlyWhatIsAStation) {
   for (const ServiceFields& wrong :
        {ServiceFields{}, {{"tls", "1"}}, {{"tls", "2"}, {"path", "/"}}, {{"tls", "1"}, {"path", "//evil.example/"}}})
     EXPECT_FALSE(read_service("a", nearby, 80, wrong));
+}
+
+TEST(ServiceDiscovery, TellsStationsOfOneNameApart) {
+  const auto heard = [](const char* name, const char* host, const char* port, const char* machine) {
+    return HeardStation{StationAddress{name, host, port, false, {}}, machine};
+  };
+  const auto found = distinct_stations(
+      {heard("table", "192.0.2.9", "8080", "insula-b.local"), heard("table", "2001:db8::7", "8080", "insula-a.local"),
+       heard("table", "192.0.2.7", "8080", "insula-a.local"), heard("desk", "192.0.2.8", "8080", "insula-c.local")},
+      ServiceDiscovery::most_found);
+  std::vector<std::string> shown;
+  for (const StationAddress& one : found) shown.push_back(one.name + " " + one.url());
+  EXPECT_EQ(shown, (std::vector<std::string>{"desk http://192.0.2.8:8080/", "table http://192.0.2.7:8080/",
+                                             "table http://192.0.2.9:8080/"}));
+  EXPECT_EQ(distinct_stations({heard("a", "192.0.2.1", "1", "x"), heard("b", "192.0.2.2", "1", "y")}, 1).size(), 1u);
 }
 
 /// A station that listens on all addresses of its machine, and may be asked from `instructor`.
@@ -123,6 +142,61 @@ TEST_F(DiscoveryByCable, OneNameOfTwoStationsGetsANumber) {
   const NetworkStation two("table");  // on another machine than the first
   ASSERT_EQ(two.error, "");
   EXPECT_EQ(desk.found({"table", "table #2"}), (Names{"table", "table #2"}));
+}
+
+TEST_F(DiscoveryByCable, OneNameOfTwoStationsOfOneMachineGetsANumber) {
+  ASSERT_TRUE(rooms_.enter_machine());
+  NetworkStation desk("desk");
+  const auto one = there("table"), two = there("table");
+  EXPECT_EQ(desk.found({"table", "table #2"}), (Names{"table", "table #2"}));
+}
+
+TEST_F(DiscoveryByCable, AStationIsFoundWhenItsNetworkComesLater) {
+  ASSERT_TRUE(rooms_.enter_stranger());
+  ASSERT_EQ(std::system("ip addr flush dev cable0"), 0);
+  const auto late = there("late");
+  ASSERT_TRUE(rooms_.enter_machine());
+  NetworkStation desk("desk");
+  ASSERT_TRUE(rooms_.enter_stranger());
+  ASSERT_EQ(std::system("ip addr add 10.231.7.9/24 dev cable0 && ip route add 224.0.0.0/4 dev cable0"), 0);
+  ASSERT_TRUE(rooms_.enter_machine());
+  EXPECT_EQ(desk.found({"late"}), Names{"late"});
+  EXPECT_EQ(desk.room()["found"][0]["url"], "http://10.231.7.9:" + std::to_string(late->port()) + "/");
+}
+
+/// Avahi's own daemon in the calling thread's namespace. One runs at most, since its files have fixed places.
+class AvahiDaemon {
+ public:
+  explicit AvahiDaemon(const std::filesystem::path& folder) {
+    const std::filesystem::path settings = folder / "avahi.conf";
+    std::ofstream(settings) << "[server]\nuse-ipv6=no\nenable-dbus=no\n[publish]\npublish-workstation=no\n";
+    ready = run("--check") != 0 &&
+            run("--daemonize --no-drop-root --no-chroot --no-rlimits --file " + settings.string()) == 0;
+  }
+  ~AvahiDaemon() {
+    if (ready) run("--kill");
+  }
+  bool ready = false;
+
+ private:
+  static int run(const std::string& options) {
+    return std::system(("/usr/sbin/avahi-daemon " + options + " > /dev/null 2>&1").c_str());
+  }
+};
+
+TEST_F(DiscoveryByCable, SharesThePortWithAvahisDaemon) {
+  test_files::TempFolder folder;
+  ASSERT_TRUE(rooms_.enter_machine());
+  const AvahiDaemon daemon(folder.path());
+  if (!daemon.ready) GTEST_SKIP() << "no avahi-daemon here, or one that runs";
+  auto desk = std::make_unique<NetworkStation>("desk");
+  ASSERT_EQ(desk->error, "");
+  const auto one = there("table 1");
+  EXPECT_EQ(desk->found({"table 1"}), Names{"table 1"});
+  ASSERT_TRUE(rooms_.enter_stranger());
+  EXPECT_EQ(one->found({"desk"}), Names{"desk"});
+  desk.reset();
+  EXPECT_EQ(one->found({}), Names{}) << "its farewell is heard";
 }
 
 TEST_F(DiscoveryByCable, NothingIsAnnouncedWithoutNeed) {
