@@ -10,6 +10,7 @@
 #include "engine/command_line/common_options.h"
 #include "engine/command_line/people.h"
 #include "engine/command_line/play.h"
+#include "engine/command_line/room_command.h"
 #include "engine/command_line/run.h"
 #include "engine/command_line/run_command_line.h"
 #include "engine/command_line/sessions.h"
@@ -284,6 +285,7 @@ void add_commands(Options& c) {
   add_replay(c);
   add_play(c);
   add_view(c);
+  insula::add_room_command(c);
   add_tool_programs(c);
 }
 

@@ -2,11 +2,9 @@
 // insula play [SCENE]
 #include <fmt/format.h>
 #include <signal.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <ostream>
 
@@ -21,6 +19,7 @@
 #include "engine/live/catalogue.h"
 #include "engine/live/exercise_choice.h"
 #include "engine/live/notice.h"
+#include "engine/live/open_browser.h"
 #include "engine/live/project_folder.h"
 #include "engine/live/scene_devices.h"
 #include "engine/live/scene_reload.h"
@@ -88,30 +87,6 @@ class BusCheck {
   std::unique_ptr<Bus> bus_;
   EngineListener engines_;
 };
-
-bool has_display() {
-  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"})
-    if (const char* value = std::getenv(name); value != nullptr && *value != '\0') return true;
-  return false;
-}
-
-/// Starts xdg-open independently of this process. It forks twice, so that xdg-open is not a child of this process and
-/// continues after it.
-void open_browser(const std::string& url) {
-  const char* address = url.c_str();
-  const pid_t pid = fork();
-  if (pid == 0) {
-    for (int s : {SIGINT, SIGTERM, SIGHUP, SIGCHLD, SIGPIPE}) signal(s, SIG_DFL);
-    setsid();
-    if (fork() == 0) {
-      if (freopen("/dev/null", "w", stdout) == nullptr || freopen("/dev/null", "w", stderr) == nullptr) _exit(1);
-      execlp("xdg-open", "xdg-open", address, static_cast<char*>(nullptr));
-      _exit(127);
-    }
-    _exit(0);
-  }
-  if (pid > 0) waitpid(pid, nullptr, 0);
-}
 
 /// Folder in which the engine writes the viewer's files. A killed engine leaves its files there, and they are removed
 /// with the session.
@@ -226,7 +201,7 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
     print("insula: viewer at " + url);
     if (!options.view) print("insula: the instructor's page is " + url + "?role=instructor");
     lock.announce(url);
-    if (first && options.browser && has_display()) open_browser(url);
+    if (first && options.browser) open_browser(url);
   };
   // The viewer starts first, so that it is available while the engine loads.
   supervisor.add(

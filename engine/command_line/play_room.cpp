@@ -7,7 +7,6 @@
 
 #include "core/base/input_error.h"
 #include "core/base/pin.h"
-#include "core/base/system_random.h"
 #include "training/store/data_folder.h"
 
 namespace insula {
@@ -15,8 +14,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* random_pin = "random";
-
-std::string new_pin() { return system_random(fewest_pin_digits, std::string(pin_digits)); }
 
 }  // namespace
 
@@ -38,8 +35,7 @@ fs::path write_pins(const RoomOptions& options, const fs::path& folder,
   if (options.pin.empty()) return {};
   const std::string pin = options.pin == random_pin ? new_pin() : options.pin;
   if (!is_pin(pin)) throw InputError("--pin: a PIN has 6 to 12 digits, as in --pin=123456");
-  std::string observer_pin = new_pin();
-  while (observer_pin == pin) observer_pin = new_pin();
+  const std::string observer_pin = new_pin(pin);
   const fs::path file = folder / "pins.json";
   std::ofstream out(file);
   std::error_code error;

@@ -54,7 +54,12 @@ struct Gateway::Impl {
   ServiceDiscovery discovery;
   Room room{
       io, {options.stations, options.kept_stations}, options.secrets.key, options.discovery ? &discovery : nullptr};
-  Site site{hub, hosts, page, sessions, training, logins, login_api, audit, options.is_here, station, room};
+  RoomAccess room_access{options.secrets, options.kept_key, [this](const Secrets& secrets) {
+                           logins.set_secrets(secrets);
+                           room.set_key(secrets.key);
+                         }};
+  Site site{hub,   hosts,           page,    sessions, training,   logins, login_api,
+            audit, options.is_here, station, room,     room_access};
   std::atomic<bool> stopping{false};
   std::thread network, bus_thread;
   std::uint16_t port = 0;
@@ -83,6 +88,7 @@ std::string Gateway::Impl::open() {
     if (!error) {
       port = acceptor.local_endpoint().port();
       login_api.set_place(port, tls != nullptr);
+      room_access.set_reachable(!acceptor.local_endpoint().address().is_loopback());
       return {};
     }
     boost::system::error_code ignored;

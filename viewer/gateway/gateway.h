@@ -35,6 +35,7 @@ struct Options {
   std::string station;                               ///< its name in overviews; empty: the machine's
   std::vector<StationAddress> stations;              ///< of the room, for the overview
   std::filesystem::path kept_stations;               ///< JSON of those that pages add to it; empty: they add none
+  std::filesystem::path kept_key;                    ///< file for a key that pages make or give; empty: they do not
   bool discovery = true;          ///< announces the station where others reach it, and finds others for the overview
   IsHere is_here = same_machine;  ///< tells pages on this machine from others
 };

@@ -35,6 +35,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void answer_login(const Request& request, bool out);
   void answer_room(const Request& request, const std::vector<std::string>& parts);
   void change_room(const Request& request);
+  void answer_access(const Request& request);
   void take_picture(const Request& request);
   void give_ticket(const Request& request);
   void answer_training(const Request& request, const std::vector<std::string>& parts);

@@ -157,6 +157,7 @@ class GatewayOfARoom : public ::testing::Test {
     options.secrets = std::move(secrets);
     options.audit = folder_.path() / "commands.log";
     options.kept_stations = folder_.path() / "stations.json";
+    options.kept_key = folder_.path() / "room_key";
     if (tls) options.tls = self_made_certificate(folder_.path() / "own", {});
     options.is_here = [](const auto& remote, const auto&) { return remote.to_string() == "127.0.0.1"; };
     fs::create_directories(options.page);
@@ -428,6 +429,30 @@ TEST(AuditRecord, IsBounded) {
   for (std::string line; std::getline(in, line);)
     EXPECT_EQ(json::parse(line)["command"].get<std::string>().size(), 400U);
   EXPECT_THROW(Audit("/proc/nowhere/commands.log"), InputError);
+}
+
+TEST_F(GatewayOfARoom, SecretsAreMadeAndSeenOnlyHere) {
+  start({});
+  const pages::Request look{http::verb::get, "/api/room/access"};
+  const pages::Request make{http::verb::post, "/api/room/access", {}, R"({"make": "pins"})"};
+  EXPECT_EQ(ask("127.0.0.2", make).result_int(), 403u);
+  EXPECT_EQ(ask("127.0.0.1", {make.verb, make.target, {{"Origin", "http://evil.example"}}, make.body}).result_int(),
+            403u);
+  EXPECT_EQ(json::parse(ask("127.0.0.1", look).body())["pin"], "");
+  const json made = json::parse(ask("127.0.0.1", make).body());
+  const std::string pin = made["pin"], observer_pin = made["observer_pin"];
+  EXPECT_EQ(ask("127.0.0.2", look).result_int(), 401u) << "from now on others log in";
+  const std::string login = cookie(log_in("127.0.0.2", pin));
+  EXPECT_EQ(reaches_the_bus("127.0.0.2", "?role=instructor", login), std::vector<std::string>{"pause"});
+  EXPECT_EQ(ask("127.0.0.2", {http::verb::get, "/api/room/access", {{"Cookie", login}}}).result_int(), 403u);
+  ASSERT_EQ(ask("127.0.0.1", {http::verb::post, "/api/room/access", {}, R"({"make": "key"})"}).result_int(), 200u);
+  const std::string key = json::parse(ask("127.0.0.1", look).body())["key"];
+  EXPECT_EQ(ask("127.0.0.2", {http::verb::get, "/api/station", {{"Authorization", "Bearer " + key}}}).result_int(),
+            200u);
+  std::ifstream in(folder_.path() / "commands.log");
+  const std::string record(std::istreambuf_iterator<char>(in), {});
+  EXPECT_NE(record.find("secrets of the room"), record.npos);
+  for (const std::string& secret : {pin, observer_pin, key}) EXPECT_EQ(record.find(secret), record.npos);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "viewer/gateway/access.h"
 #include "viewer/gateway/secrets.h"
@@ -27,6 +28,9 @@ class Logins {
 
   /// Whether pages of other machines must log in. Without a PIN and a key they may only observe.
   bool needed() const { return !secrets_.pin.empty() || !secrets_.key.empty(); }
+
+  /// From now on. Who is logged in stays so.
+  void set_secrets(Secrets secrets) { secrets_ = std::move(secrets); }
 
   struct Outcome {
     Access access = Access::none;  ///< none: refused

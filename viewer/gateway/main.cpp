@@ -49,7 +49,10 @@ void read_access(Options& options, const Places& places) {
     fs::create_directories(places.own, error);
     options.audit = places.own / "commands.log";
     options.kept_stations = places.own / "stations.json";
+    if (places.key.empty()) options.kept_key = places.own / "room_key";
   }
+  if (!options.kept_key.empty() && fs::exists(options.kept_key))
+    insula::gateway::read_key(options.kept_key, options.secrets);
   if (places.self_made) options.tls = insula::gateway::self_made_certificate(places.own, options.hosts);
 }
 

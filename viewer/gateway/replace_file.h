@@ -7,16 +7,19 @@
 
 namespace insula::gateway {
 
-/// Whether the file has the text now. The text is first written beside it, to NAME.part.
-inline bool replace_file(const std::filesystem::path& file, std::string_view text) {
-  const std::filesystem::path part = file.string() + ".part";
+/// Whether the file has the text now. The text is first written beside it, to NAME.part. secret: only its owner may
+/// read it.
+inline bool replace_file(const std::filesystem::path& file, std::string_view text, bool secret = false) {
+  namespace fs = std::filesystem;
+  const fs::path part = file.string() + ".part";
   std::ofstream out(part, std::ios::binary | std::ios::trunc);
-  out << text;
-  out.close();
   std::error_code error;
-  if (out) std::filesystem::rename(part, file, error);
+  if (secret) fs::permissions(part, fs::perms::owner_read | fs::perms::owner_write, error);
+  if (!error) out << text;
+  out.close();
+  if (out && !error) fs::rename(part, file, error);
   if (out && !error) return true;
-  std::filesystem::remove(part, error);
+  fs::remove(part, error);
   return false;
 }
 

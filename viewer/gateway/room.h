@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "viewer/gateway/service_discovery.h"
@@ -29,6 +30,8 @@ class Room {
   /// others, which are shown but never asked; it must outlive the room; null: none are found.
   Room(boost::asio::io_context& io, Lists lists, std::string key, ServiceDiscovery* discovery);
   void start();
+  /// Shown to the listed stations from now on.
+  void set_key(std::string key) { key_ = std::move(key); }
 
   /// {stations: [{number, url, given, name, error, picture, station}], found: [{name, url}], search_error}. given: it
   /// stays. error: why it does not answer. station: what it says of itself (station.h), or null. found: in the network,

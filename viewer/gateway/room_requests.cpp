@@ -23,8 +23,8 @@ std::optional<std::size_t> station_in(std::string_view target, const Room& room)
 
 }  // namespace
 
-/// /api/station, /api/station/picture, /api/ticket, /api/room, /api/room/picture, /api/room/open, /api/room/stations.
-/// Only for who may give commands, and from our own site where something changes.
+/// /api/station, /api/station/picture, /api/ticket, /api/room, /api/room/picture, /api/room/open, /api/room/stations,
+/// /api/room/access. Only for who may give commands, and from our own site where something changes.
 void HttpSession::answer_room(const Request& request, const std::vector<std::string>& parts) {
   const auto refuse = [&](http::status status, std::string_view why) { send_error(request, status, why); };
   const bool reads = request.method() == http::verb::get || request.method() == http::verb::head;
@@ -46,6 +46,7 @@ void HttpSession::answer_room(const Request& request, const std::vector<std::str
     return send_text(request, http::status::ok, json_type, site_.room.json());
   const std::string_view target(request.target().data(), request.target().size());
   if (parts[1] == "room" && part == "stations" && !reads) return change_room(request);
+  if (parts[1] == "room" && part == "access") return answer_access(request);
   const auto station = station_in(target, site_.room);
   if (parts[1] != "room" || !station) return refuse(http::status::not_found, "not found");
   if (part == "picture" && reads) return picture(site_.room.picture(*station));
@@ -78,6 +79,19 @@ void HttpSession::change_room(const Request& request) {
                      why});
   if (!why.empty()) return refuse(http::status::bad_request, why);
   send_text(request, http::status::ok, json_type, "{}\n");
+}
+
+/// GET and POST. The secrets of the room do not leave this machine, and they are not in the record.
+void HttpSession::answer_access(const Request& request) {
+  const auto refuse = [&](http::status status, std::string_view why) { send_error(request, status, why); };
+  if (visitor_.access != Access::here) return refuse(http::status::forbidden, "only for pages on this machine");
+  if (request.method() == http::verb::get)
+    return send_text(request, http::status::ok, json_type, site_.room_access.state().json);
+  if (request.method() != http::verb::post) return refuse(http::status::bad_request, "GET or POST");
+  const ApiAnswer answer = site_.room_access.change(request.body());
+  site_.audit.write({visitor_.address, std::string(name_of(visitor_.access)), 0, "secrets of the room",
+                     answer.status == 200, answer.status == 200 ? "" : answer.json});
+  send_text(request, http::status(answer.status), json_type, answer.json);
 }
 
 /// Of the trainee's page, which is on this machine.

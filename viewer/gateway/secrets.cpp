@@ -11,6 +11,7 @@
 #include "core/base/input_error.h"
 #include "core/base/pin.h"
 #include "core/base/private_file.h"
+#include "core/base/system_random.h"
 
 namespace insula::gateway {
 namespace fs = std::filesystem;
@@ -37,6 +38,8 @@ std::string read_private(const fs::path& file) {
 bool is_key(const std::string& text) {
   return text.size() >= 32 && text.size() <= 128 && all_of(text, is_key_character);
 }
+
+std::string new_key() { return system_random(64, "0123456789abcdef"); }
 
 void read_pins(const fs::path& file, Secrets& secrets) {
   const auto json = nlohmann::json::parse(read_private(file), nullptr, false);

@@ -15,6 +15,9 @@ struct Secrets {
 /// 32 to 128 letters, digits, "-" and "_".
 bool is_key(const std::string& text);
 
+/// A random key.
+std::string new_key();
+
 /// Reads {"pin", "observer_pin"}. Throws InputError if the file is malformed or others than its owner may read it.
 void read_pins(const std::filesystem::path& file, Secrets& secrets);
 /// Reads a key: one line. Throws as read_pins().

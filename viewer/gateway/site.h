@@ -9,6 +9,7 @@
 #include "viewer/gateway/login_api.h"
 #include "viewer/gateway/logins.h"
 #include "viewer/gateway/room.h"
+#include "viewer/gateway/room_access.h"
 #include "viewer/gateway/sessions.h"
 #include "viewer/gateway/station.h"
 #include "viewer/gateway/training_api.h"
@@ -33,6 +34,7 @@ struct Site {
   const IsHere& is_here;
   Station& station;
   Room& room;
+  RoomAccess& room_access;
 };
 
 }  // namespace insula::gateway

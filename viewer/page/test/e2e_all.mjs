@@ -17,6 +17,7 @@ const checks = [
   'replay',
   'start',
   'room',
+  'desk',
   'voice',
   'access',
   'keyboard',

@@ -45,6 +45,18 @@ try {
   assert.equal(await page.inputValue('#person'), '', 'a guest at first');
   check('a start page shows the exercises, and a guest needs nothing');
 
+  const room = page.getByRole('link', { name: 'The room' });
+  await room.waitFor(patience);
+  const reached = () => room.evaluate((link) => link === document.activeElement);
+  for (let k = 0; k < 60 && !(await reached()); k++) await page.keyboard.press('Tab');
+  assert.ok(await reached(), 'the way to the room by keys');
+  await page.keyboard.press('Enter');
+  await page.waitForURL(/room\.html/, patience);
+  await page.getByText('No stations are listed yet.').waitFor(patience);
+  await page.goBack();
+  await page.waitForSelector('.card', patience);
+  check('keys lead to the room and back');
+
   await page.getByRole('button', { name: 'Add a person' }).click();
   await page.keyboard.type('P07');
   await page.getByLabel('Year of training').fill('3');

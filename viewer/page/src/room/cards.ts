@@ -25,6 +25,9 @@ export function alarmLines(alarms: StationView['alarms']): string[] {
   return [...last].map(([what, { timeS, count }]) => `${clockText(timeS)} ${what}${count > 1 ? ` ×${count}` : ''}`);
 }
 
+/** Of a station: "192.0.2.7:8080". */
+export const placeOf = (url: string): string => url.replace(/^https?:\/\//, '').replace(/\/$/, '');
+
 export class StationCard {
   readonly root = el('article', { class: 'station' });
   private readonly picture = el('img', { alt: '' });
@@ -37,7 +40,7 @@ export class StationCard {
   private shownPicture = 0;
 
   constructor(
-    name: string,
+    { name, url }: { name: string; url: string },
     private readonly pictureUrl: (number: number) => string,
     open: () => void,
     remove: (() => void) | null,
@@ -45,7 +48,9 @@ export class StationCard {
     this.picture.hidden = true;
     this.open.onclick = open;
     const head = el('header', {}, el('h2', {}, name), this.person, this.clock);
-    this.root.append(el('div', { class: 'frame' }, this.picture), head, this.title, this.standing, this.alarms);
+    // Two stations may have one name.
+    const place = el('p', { class: 'place' }, placeOf(url));
+    this.root.append(el('div', { class: 'frame' }, this.picture), head, place, this.title, this.standing, this.alarms);
     const buttons = el('div', { class: 'buttons' }, this.open);
     if (remove) {
       const take = el('button', { type: 'button' }, text('Remove'));

@@ -4,6 +4,7 @@ import './room.css';
 import '../screens.css';
 import { el, setText } from '../hud/dom';
 import { text } from '../languages/text';
+import { AccessDialog } from './access_dialog';
 import { StationCard } from './cards';
 import { FoundStations } from './found_stations';
 import { roomOf, standingOf, type StationView } from './overview';
@@ -19,8 +20,10 @@ const form = new StationForm((s: NewStation) => change(new URL('api/room/station
 const found = new FoundStations((s) => form.open(s.name, s.url));
 const add = el('button', { type: 'button', class: 'add' }, text('Add a station'));
 add.onclick = () => form.open();
-const top = el('header', { class: 'top' }, el('h1', {}, text('The room')), say, add);
-document.getElementById('room')!.append(top, grid, found.root, form.root);
+const access = new AccessDialog(base);
+const buttons = el('div', { class: 'buttons' }, access.button, add);
+const top = el('header', { class: 'top' }, el('h1', {}, text('The room')), say, buttons);
+document.getElementById('room')!.append(top, grid, found.root, form.root, access.root);
 
 /** A window of its own is opened at the click, before the gateway has answered, or the browser would block it. */
 async function open(station: number): Promise<void> {
@@ -53,7 +56,7 @@ function cardOf(s: StationView): StationCard {
   if (known) return known;
   const pictureUrl = (n: number) => new URL(`api/room/picture?station=${s.number}&number=${n}`, base).href;
   const take = s.given ? null : () => void remove(s);
-  const card = new StationCard(s.name, pictureUrl, () => void open(s.number), take);
+  const card = new StationCard(s, pictureUrl, () => void open(s.number), take);
   cards.set(s.number, card);
   grid.append(card.root);
   return card;
@@ -92,3 +95,4 @@ async function follow(): Promise<void> {
   window.setTimeout(() => void follow(), everyMs);
 }
 void follow();
+void access.offer();

@@ -9,6 +9,7 @@ import { CoursePanel } from './course_panel';
 import { People } from './people';
 import { Progress } from './progress';
 import { Recordings } from './recordings';
+import { roomLink } from './room_link';
 import { Settings } from './settings';
 import { languageSelect } from '../languages/language_select';
 
@@ -55,6 +56,7 @@ export class StartPage {
           {},
           text('Aneurysm surgery with two-handed haptics. For training only, never for the care of patients.'),
         ),
+        roomLink(api),
         languageSelect(),
         this.settings.button,
       ),
