@@ -18,7 +18,6 @@ struct SimulationInput {
     reset,          ///< reset()
     factor          ///< the solver of body `index` took a factor from the background in this step
   };
-  static constexpr int kinds = 6;
 
   Kind kind = Kind::reset;
   int index = 0;  ///< 0 left, 1 right; of a factor: the body, from 0 in document order

@@ -9,6 +9,7 @@
 #include "core/testing/block_mesh.h"
 #include "core/testing/example.h"
 #include "engine/live/frame.h"
+#include "engine/live/shown_contacts.h"
 
 namespace insula {
 namespace {
@@ -51,7 +52,7 @@ TEST(ContactSides, AreNamedInFramesAndDescribedInTheBundle) {
   ASSERT_EQ(frame.contact_side.size(), std::size_t(frame.contacts));
   std::set<std::set<std::string>> owners;
   for (std::size_t i = 0; i < frame.contact_side.size(); ++i) {
-    const ContactPoint& c = simulation->report().contacts[i];
+    const ContactPoint& c = simulation->report().contacts[shown_contacts(simulation->report().contacts)[i]];
     const SidesJson& a = sides.at(std::size_t(frame.contact_side[i].at(0)));
     const SidesJson& b = sides.at(std::size_t(frame.contact_side[i].at(1)));
     EXPECT_EQ(a.at("owner"), c.a->id);
@@ -72,6 +73,32 @@ TEST(ContactSides, AreNamedInFramesAndDescribedInTheBundle) {
   EXPECT_EQ(of("arm").at("role"), "instrument");
   EXPECT_EQ(of("arm").at("kind"), "retractor");
   EXPECT_EQ(of("arm").at("material"), simulation->instruments()[0]->tool().parts.at(0).material);
+}
+
+TEST(ShownContacts, AreThoseOfHandsAndThenTheStrongest) {
+  test::SceneFolder folder;
+  const auto simulation = three_contacts(folder);
+  ASSERT_TRUE(simulation);
+  const auto body = [&](const char* id) { return simulation->scene().find_as<Body>(id); };
+  const auto touch = [&](const char* a, const char* b, double force) {
+    ContactPoint c;
+    c.a = body(a);
+    c.b = body(b);
+    c.normal_force = force;
+    return c;
+  };
+  // No hand moves the arm. A hand presses the pad less than the arm does, and both hands' tools touch each other.
+  const std::vector<ContactPoint> all{
+      touch("arm", "pad", 0.2),   touch("arm", "pad", 0.5),     touch("pad", "first", 0.01),
+      touch("arm", "pad", 0.5),   touch("rim", "other", 0),     touch("pad", "rim", 0.3),
+      touch("first", "other", 1), touch("first", "first", 0.4), touch("arm", "first", 0.02)};
+  EXPECT_EQ(shown_contacts(all), (std::vector<std::size_t>{6, 8, 2, 4, 1, 3, 7, 5, 0}));
+  EXPECT_EQ(shown_contacts(all, 5), (std::vector<std::size_t>{6, 8, 2, 4, 1})) << "of equals the first one";
+  std::vector<ContactPoint> many(300, touch("arm", "pad", 0.5));
+  many[299] = touch("first", "pad", 1e-3);
+  const std::vector<std::size_t> shown = shown_contacts(many);
+  ASSERT_EQ(shown.size(), most_shown_contacts);
+  EXPECT_EQ(shown.front(), 299u) << "a weak contact of a hand is shown";
 }
 
 TEST(ContactSides, OfWhatIsNotInTheSceneHaveNoNumber) {

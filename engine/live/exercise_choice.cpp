@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/live/exercise_choice.h"
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "engine/command_line/run.h"
@@ -64,21 +62,15 @@ void ExerciseChoice::look(Supervisor& supervisor) {
   offer.command = offer.command_after;
   offer.command.emplace_back("--standby");
   offer.ready_line = standby_line;
-  offer.refused = [this, choice = wanted_](const auto& lines, const ChildExit& exit) { refused(choice, lines, exit); };
+  offer.refused = [this, choice = wanted_](const auto& lines, const ChildExit& exit) {
+    tell(choice, "refused", why_refused(lines, exit));
+  };
   offer.taken = [this, choice = wanted_] {
     present_ = choice;
     tell(present_, "running");
     taken_(present_);
   };
   waiting_ = !supervisor.offer("engine", std::move(offer));
-}
-
-void ExerciseChoice::refused(const ChosenExercise& choice, const std::vector<std::string>& lines,
-                             const ChildExit& exit) {
-  std::string text;
-  for (const std::string& line : lines)
-    if (line.find("error: ") != std::string::npos) text += line + "\n";
-  tell(choice, "refused", text.empty() ? fmt::format("the engine that loaded it {}", exit.text()) : text);
 }
 
 void ExerciseChoice::tell(const ChosenExercise& choice, const char* state, const std::string& text) {

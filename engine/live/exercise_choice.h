@@ -39,7 +39,6 @@ class ExerciseChoice {
 
  private:
   void tell(const ChosenExercise& choice, const char* state, const std::string& text = {});
-  void refused(const ChosenExercise& choice, const std::vector<std::string>& lines, const ChildExit& exit);
 
   ChosenExercise present_, wanted_;
   std::filesystem::path state_;

@@ -7,6 +7,7 @@
 #include "core/mechanics/deformable_body.h"
 #include "engine/live/contact_sides.h"
 #include "engine/live/hud.h"
+#include "engine/live/shown_contacts.h"
 
 namespace insula {
 namespace {
@@ -65,8 +66,21 @@ void fill_step_data(const Simulation& simulation, insula_lcm::render_frame_t& f)
   }
 }
 
-// Largest number of shown contacts, so that frames stay small.
-constexpr std::size_t max_contacts = 120;
+void fill_contacts(const Simulation& simulation, insula_lcm::render_frame_t& f) {
+  const std::vector<ContactPoint>& all = simulation.report().contacts;
+  const std::vector<std::size_t> shown = shown_contacts(all);
+  f.contacts = std::int32_t(shown.size());
+  f.contact_x_m.resize(shown.size());
+  f.contact_N.resize(shown.size());
+  f.contact_side.resize(shown.size());
+  const ContactSides sides(simulation);
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const ContactPoint& c = all[shown[i]];
+    put(f.contact_x_m, i, c.position);
+    f.contact_N[i] = float(c.normal_force);
+    f.contact_side[i] = {sides.number(*c.a, c.part_a), sides.number(*c.b, c.part_b)};
+  }
+}
 
 }  // namespace
 
@@ -111,18 +125,7 @@ void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& f, con
     f.tool[i].index = std::int32_t(i);
     fill_tool(*tools[i], f.tool[i]);
   }
-  const std::size_t contacts = std::min(max_contacts, r.contacts.size());
-  f.contacts = std::int32_t(contacts);
-  f.contact_x_m.resize(contacts);
-  f.contact_N.resize(contacts);
-  f.contact_side.resize(contacts);
-  const ContactSides sides(simulation);
-  for (std::size_t i = 0; i < contacts; ++i) {
-    const ContactPoint& c = r.contacts[i];
-    put(f.contact_x_m, i, c.position);
-    f.contact_N[i] = float(c.normal_force);
-    f.contact_side[i] = {sides.number(*c.a, c.part_a), sides.number(*c.b, c.part_b)};
-  }
+  fill_contacts(simulation, f);
   f.step_ms = r.step_ms;
   f.step_period_ms = simulation.h() * 1000;
   f.rows = r.rows;

@@ -10,6 +10,7 @@
 #include "core/bus/codec.h"
 #include "core/registry/registry.h"
 #include "engine/live/frame.h"
+#include "engine/live/shown_contacts.h"
 
 namespace insula {
 namespace {
@@ -215,10 +216,10 @@ TEST(Frame, StaysUnderWhatOneMessageCarries) {
   tool.q[0] = 1;
   f.tools = 50;
   f.tool.assign(50, tool);
-  f.contacts = 120;
-  f.contact_x_m.assign(120, std::vector<float>(3, 0.f));
-  f.contact_N.assign(120, 0.f);
-  f.contact_side.assign(120, std::vector<std::int16_t>(2, 0));
+  f.contacts = std::int32_t(most_shown_contacts);
+  f.contact_x_m.assign(most_shown_contacts, std::vector<float>(3, 0.f));
+  f.contact_N.assign(most_shown_contacts, 0.f);
+  f.contact_side.assign(most_shown_contacts, std::vector<std::int16_t>(2, 0));
   std::vector<std::uint8_t> bytes;
   ASSERT_TRUE(encode(f, bytes));
   EXPECT_LT(bytes.size(), 120'000u);

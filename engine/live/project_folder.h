@@ -13,8 +13,10 @@ std::filesystem::path own_program();
 /// Empty: there is none.
 std::filesystem::path project_folder();
 
-/// How a scene is named in the training store and in curricula: relative to the project's folder if it is below it,
-/// else absolute. Equal for equal files, whatever the current folder.
+/// How a scene is named in the training store and by pages: relative to the project's folder if it is below it, else
+/// absolute. Equal for equal files, whatever the current folder, and scene_file() finds the file again. Curricula name
+/// scenes by scene_key() (training/curriculum/curriculum.h), which is the same for copies of a project in other
+/// folders.
 std::string scene_name(const std::filesystem::path& scene);
 /// The file of such a name.
 std::filesystem::path scene_file(const std::string& name);

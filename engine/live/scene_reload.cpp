@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/live/scene_reload.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "core/registry/plugin_loader.h"
@@ -59,26 +57,20 @@ void SceneReload::look(Supervisor& supervisor) {
   Supervisor::Offer offer;
   offer.command = command_;
   offer.ready_line = standby_line;
-  offer.refused = [this](const auto& lines, const ChildExit& exit) { refused(lines, exit); };
+  offer.refused = [this](const auto& lines, const ChildExit& exit) { refused(why_refused(lines, exit)); };
   offer.taken = [this] { tell_viewers(""); };
   waiting_ = !supervisor.offer("engine", std::move(offer));
 }
 
-void SceneReload::refused(const std::vector<std::string>& lines, const ChildExit& exit) {
-  std::string text;
-  for (const std::string& line : lines)
-    if (line.find(": error: ") != std::string::npos || line.find(": warning: ") != std::string::npos ||
-        line.starts_with("error: "))
-      text += line + "\n";
-  if (text.empty()) text = fmt::format("the saved scene cannot be run: the engine that loaded it {}\n", exit.text());
+void SceneReload::refused(const std::string& why) {
   print_("insula: the saved scene has errors; the one before goes on");
-  std::string_view rest = text;
+  std::string_view rest = why;
   while (!rest.empty()) {
     const std::size_t end = rest.find('\n');
     print_(rest.substr(0, end));
     rest.remove_prefix(end + 1);
   }
-  tell_viewers(text);
+  tell_viewers(why);
 }
 
 void SceneReload::tell_viewers(const std::string& text) {

@@ -27,7 +27,7 @@ class SceneReload {
 
  private:
   std::vector<std::filesystem::path> files() const;
-  void refused(const std::vector<std::string>& lines, const ChildExit& exit);
+  void refused(const std::string& why);
   void tell_viewers(const std::string& text);
 
   std::filesystem::path scene_, notice_;

@@ -2,25 +2,12 @@
 // A cue is also a soft force only where a trainee who practises has chosen it: in the rule, and in a running engine.
 #include "engine/live/soft_guiding.h"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <thread>
-
-#include "core/bus/channels.h"
-#include "core/bus/codec.h"
-#include "core/bus/mem_bus.h"
-#include "core/registry/registry.h"
 #include "engine/live/cause_lines.h"
+#include "engine/live/engine_for_test.h"
 #include "engine/live/hud.h"
-#include "engine/live/live_engine.h"
 
 namespace insula {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// A value that is too large from the first step on.
 class TooLarge final : public Constraint {
@@ -30,10 +17,11 @@ class TooLarge final : public Constraint {
   void publish() override { pull.set(1); }
 };
 
+void add_too_large(Registry& r) { r.add<TooLarge>("too_large", Kind::constraint, "for tests"); }
 Registry with_too_large() {
   Registry r;
   register_builtin(r);
-  r.add<TooLarge>("too_large", Kind::constraint, "for tests");
+  add_too_large(r);
   return r;
 }
 
@@ -117,91 +105,44 @@ TEST(SoftGuiding, CausesOfHintsAreMadeTenTimesASecond) {
   EXPECT_NEAR(made, 21, 1) << "a reset renews them";
 }
 
-/// A running engine, and a page that listens.
-class RunningGuide : public ::testing::Test {
+class RunningGuide : public test::RunningEngine {
  protected:
   RunningGuide() {
-    fs::create_directories(folder_);
-    std::ofstream(folder_ / "s.xml") << pulled_scene;
+    add_too_large(registry_);
     page_.subscribe(channel::soft_guide, [this](Bytes b) {
       const auto m = decode<insula_lcm::soft_guide_t>(b);
       ASSERT_TRUE(m) << "the engine sends what the haptic server takes";
       EXPECT_EQ(m->hand, 1);
       ++guides_;
     });
-    page_.subscribe(channel::sim_event, [this](Bytes b) {
-      if (const auto m = decode<insula_lcm::sim_event_t>(b)) events_.push_back(m->kind + " " + m->id);
-    });
-    page_.subscribe(channel::render_frame, [this](Bytes b) {
-      const auto m = decode<insula_lcm::render_frame_t>(b);
-      ASSERT_TRUE(m);
-      const auto hud = nlohmann::json::parse(m->hud_json);
-      mode_ = hud.at("mode");
-      chosen_ = hud.at("tutor").at("soft_guide");
-      guided_ = hud.at("tutor").at("guided");
-      time_s_ = m->sim_time_s;
-    });
-    LiveOptions options;
-    options.scene = folder_ / "s.xml";
-    options.bundle_root = folder_ / "bundles";
-    options.motion = "none";
-    options.mode = SessionMode::practice;
-    engine_ = std::thread([this, options] { run_live(options, registry_, bus_, stop_); });
+    start(pulled_scene, SessionMode::practice);
   }
-  ~RunningGuide() override {
-    stop_ = true;
-    engine_.join();
-    fs::remove_all(folder_);
-  }
-  void ask(const char* command, const char* argument) {
-    insula_lcm::user_command_t m{};
-    m.command = command;
-    m.argument = argument;
-    ASSERT_TRUE(publish(page_, channel::user_command, m, scratch_));
-  }
-  template <class Condition>
-  bool eventually(Condition condition) {
-    for (int k = 0; k < 6000 && !condition(); ++k) page_.poll(10);
-    return condition();
-  }
-  bool said(const std::string& event) {
-    return eventually([&] { return std::find(events_.begin(), events_.end(), event) != events_.end(); });
-  }
+  bool chosen() const { return hud_.at("tutor").at("soft_guide"); }
+  std::string guided() const { return hud_.at("tutor").at("guided"); }
 
-  fs::path folder_ = fs::temp_directory_path() / ("insula_guide_" + std::to_string(::getpid()));
-  std::shared_ptr<MemHub> hub_ = std::make_shared<MemHub>();
-  MemBus bus_{hub_}, page_{hub_};
-  Registry registry_ = with_too_large();
-  std::atomic<bool> stop_{false};
-  std::thread engine_;
   int guides_ = 0;
-  bool chosen_ = false;
-  std::string mode_, guided_;
-  double time_s_ = 0;
-  std::vector<std::string> events_;
-  std::vector<std::uint8_t> scratch_;
 };
 
 TEST_F(RunningGuide, IsSentWhenChosenAndRefusedInATest) {
   ASSERT_TRUE(eventually([&] { return time_s_ > 0.3; }));
   EXPECT_EQ(guides_, 0) << "off by default";
   ask("soft_guide", "perhaps");
-  EXPECT_TRUE(said("refused soft_guide"));
-  EXPECT_FALSE(chosen_);
+  EXPECT_TRUE(said("refused", "soft_guide"));
+  EXPECT_FALSE(chosen());
   ask("soft_guide", "on");
-  EXPECT_TRUE(said("soft_guide on"));
+  EXPECT_TRUE(said("soft_guide", "on"));
   ask("begin", "practice");
   ASSERT_TRUE(eventually([&] { return guides_ > 5; }));
-  EXPECT_TRUE(eventually([&] { return chosen_ && guided_ == "right"; })) << "the page is told";
+  EXPECT_TRUE(eventually([&] { return chosen() && guided() == "right"; })) << "the page is told";
   events_.clear();
   ask("begin", "test");
-  ASSERT_TRUE(eventually([&] { return mode_ == "test" && time_s_ > 0.1; }));
+  ASSERT_TRUE(eventually([&] { return mode() == "test" && time_s_ > 0.1; }));
   guides_ = 0;
   ask("soft_guide", "on");
-  EXPECT_TRUE(said("refused soft_guide"));
+  EXPECT_TRUE(said("refused", "soft_guide"));
   ASSERT_TRUE(eventually([&] { return time_s_ > 1; }));
   EXPECT_EQ(guides_, 0);
-  EXPECT_EQ(guided_, "");
+  EXPECT_EQ(guided(), "");
 }
 
 }  // namespace

@@ -217,4 +217,13 @@ int Supervisor::run() {
   return status_;
 }
 
+std::string why_refused(const std::vector<std::string>& lines, const ChildExit& exit) {
+  std::string text;
+  for (const std::string& line : lines)
+    if (line.find(": error: ") != std::string::npos || line.find(": warning: ") != std::string::npos ||
+        line.starts_with("error: "))
+      text += line + "\n";
+  return text.empty() ? fmt::format("the engine that loaded it {}\n", exit.text()) : text;
+}
+
 }  // namespace insula

@@ -81,4 +81,7 @@ class Supervisor {
   Clock::time_point began_, kill_at_;
 };
 
+/// Why an offer of an engine was refused: the errors and warnings among its lines, one a line, else how it ended.
+std::string why_refused(const std::vector<std::string>& lines, const ChildExit& exit);
+
 }  // namespace insula

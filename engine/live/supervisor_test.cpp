@@ -247,6 +247,13 @@ TEST_F(SupervisorTest, ARefusedOfferLeavesTheOldOneRunning) {
   EXPECT_EQ(count("worker started"), 1);
 }
 
+TEST(WhyRefused, IsItsErrorsAndWarningsElseItsEnd) {
+  EXPECT_EQ(
+      why_refused({"a.xml:1:2: error: wrong", "no terror: none", "error: no motion", "b.xml:3:1: warning: odd"}, {}),
+      "a.xml:1:2: error: wrong\nerror: no motion\nb.xml:3:1: warning: odd\n");
+  EXPECT_EQ(why_refused({"loading"}, {.status = 3}), "the engine that loaded it ended with status 3\n");
+}
+
 TEST_F(SupervisorTest, OneThatWaitsForAnOfferDoesNotEndTheSession) {
   settings_.look_s = 0.01;
   Supervisor* running = nullptr;

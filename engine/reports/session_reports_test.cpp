@@ -3,23 +3,14 @@
 // folder.
 #include "engine/reports/session_reports.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <fstream>
-#include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <random>
 #include <regex>
 
 #include "core/base/input_error.h"
-#include "core/bus/channels.h"
-#include "core/bus/codec.h"
-#include "core/bus/mem_bus.h"
 #include "core/container/mcap_reader.h"
-#include "core/registry/registry.h"
-#include "engine/live/live_engine.h"
+#include "engine/live/engine_for_test.h"
 #include "engine/session/session_format.h"
 #include "training/store/store.h"
 
@@ -61,64 +52,28 @@ class ReachedAt final : public ExerciseRule {
   double from_ = 0;  ///< s
 };
 
-class SessionReportsTest : public testing::Test {
+class SessionReportsTest : public testing::Test, public test::EngineInStep {
  protected:
-  SessionReportsTest()
-      : folder_(fs::temp_directory_path() / ("insula_session_" + std::to_string(std::random_device()()))) {
-    fs::create_directories(folder_);
-    register_builtin(registry_);
-    registry_.add<ReachedAt>("reached_at", Kind::exercise_rule, "for tests");
-    // What the engine says in each step is where a test acts: in simulated time, whatever the machine does. It is heard
-    // before the next step; that of the last one no more.
-    bus_.subscribe(channel::haptic_problem, [this](Bytes) {
-      ++steps_;
-      if (on_step_) on_step_(steps_);
-    });
-  }
-  ~SessionReportsTest() override { fs::remove_all(folder_); }
+  SessionReportsTest() { registry_.add<ReachedAt>("reached_at", Kind::exercise_rule, "for tests"); }
 
   /// A session of so many simulated seconds since its last reset, by steps of 10 ms; the exercise's goal is reached at
   /// `end`.
   int play(double duration_s, double end_s) {
-    std::ofstream(folder_ / "press.xml")
-        << R"(<scene title="Press" time_step="10 ms"><exercise id="e" title="Waiting"><reached_at id="r" at=")" << end_s
-        << R"( s"/></exercise></scene>)";
-    LiveOptions options;
-    options.scene = folder_ / "press.xml";
-    options.bundle_root = folder_ / "bundle";
-    options.duration = duration_s;
-    options.unthrottled = true;
-    options.threads = 1;
-    options.report = root();
-    options.record = record_;
-    options.store = store_;
-    options.fields = fields_;
-    options.mode = SessionMode::practice;
-    return run_live(options, registry_, bus_, stop_);
-  }
-  void ask(const std::string& command, const std::string& argument = "") {
-    insula_lcm::user_command_t m{};
-    m.time_us = 1;
-    m.sender = "test";
-    m.command = command;
-    m.argument = argument;
-    std::vector<std::uint8_t> scratch;
-    EXPECT_TRUE(publish(bus_, channel::user_command, m, scratch));
+    std::ostringstream scene;
+    scene << R"(<scene title="Press" time_step="10 ms"><exercise id="e" title="Waiting"><reached_at id="r" at=")"
+          << end_s << R"( s"/></exercise></scene>)";
+    LiveOptions settings = options(folder_.write("press.xml", scene.str()), duration_s);
+    settings.report = root();
+    settings.record = record_;
+    settings.store = store_;
+    settings.fields = fields_;
+    settings.mode = SessionMode::practice;
+    return run(settings);
   }
   void hand_force(double newtons) {
-    insula_lcm::device_state_t m{};
-    m.session = 1;
-    m.sequence = ++sequence_;
-    m.time_us = 1000 + sequence_;
-    m.hand.resize(1);
-    m.hands = 1;
-    m.hand[0].hand = 1;
-    m.hand[0].device = "mouse";
-    m.hand[0].connected = true;
-    m.hand[0].q[0] = 1;
-    m.hand[0].force_N[2] = -newtons;
-    std::vector<std::uint8_t> scratch;
-    EXPECT_TRUE(publish(bus_, channel::device_state, m, scratch));
+    insula_lcm::hand_state_t hand = connected_hand(1, "mouse");
+    hand.force_N[2] = -newtons;
+    send_hand(hand);
   }
   /// In the order they were made.
   std::vector<Json> reports() const {
@@ -138,16 +93,10 @@ class SessionReportsTest : public testing::Test {
     }
     return out;
   }
-  fs::path root() const { return folder_ / "reports"; }
+  fs::path root() const { return folder_.path() / "reports"; }
 
-  fs::path folder_, record_, store_;
+  fs::path record_, store_;
   std::map<std::string, std::string> fields_;
-  Registry registry_;
-  MemBus bus_;
-  std::atomic<bool> stop_{false};
-  std::function<void(int)> on_step_;
-  int steps_ = 0;
-  std::int64_t sequence_ = 0;
 };
 
 TEST_F(SessionReportsTest, EndsWithTheExercise) {
@@ -166,7 +115,7 @@ TEST_F(SessionReportsTest, EndsWithTheExercise) {
 }
 
 TEST_F(SessionReportsTest, EachRunIsKeptInTheTrainingStore) {
-  store_ = folder_ / "training.sqlite";
+  store_ = folder_.path() / "training.sqlite";
   fields_ = {{"person", "P07"}};
   on_step_ = [this](int step) {
     if (step == 20) ask("reset");
@@ -181,7 +130,7 @@ TEST_F(SessionReportsTest, EachRunIsKeptInTheTrainingStore) {
   EXPECT_EQ(runs[1].mode, "practice");
   EXPECT_EQ(runs[0].goals_done, 1);
   EXPECT_EQ(runs[1].goals_done, 0);
-  EXPECT_EQ(runs[1].scene, (fs::canonical(folder_) / "press.xml").string());
+  EXPECT_EQ(runs[1].scene, (fs::canonical(folder_.path()) / "press.xml").string());
   EXPECT_FALSE(runs[0].guided) << "the exercise has no guide";
   EXPECT_FALSE(runs[0].seed) << "nor complications";
   EXPECT_NEAR(runs[0].duration_s, 0.3, 1e-6);
@@ -239,7 +188,7 @@ TEST_F(SessionReportsTest, TheRecordingSaysWhatWasFoundOfEachPass) {
   on_step_ = [this](int step) {
     if (step == 30) ask("reset");
   };
-  record_ = folder_ / "run.insula";
+  record_ = folder_.path() / "run.insula";
   ASSERT_EQ(play(0.4, 0.2), 0);
   McapReader file(record_);
   std::vector<Json> reviews;
@@ -299,8 +248,8 @@ TEST_F(SessionReportsTest, NoFolderIsTakenTwice) {
   EXPECT_EQ(new_report_folder(root(), "a"), root() / "a");
   EXPECT_EQ(new_report_folder(root(), "a"), root() / "a_2");
   EXPECT_EQ(new_report_folder(root(), "a"), root() / "a_3");
-  std::ofstream(folder_ / "file") << "x";
-  EXPECT_THROW(new_report_folder(folder_ / "file", "a"), InputError);
+  const fs::path file = folder_.write("file", "x");
+  EXPECT_THROW(new_report_folder(file, "a"), InputError);
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ with a new release. While a released clip lies on the neck and the goal is not r
 because the applier pulls at them. Motion of the whole neck, by pulse and by other tools, does not count.
 
 `fault_stenosis` counts a branch whose flow falls below `limit` for longer than `grace` while no temporary clip is on,
-neither released nor shut in an applier. It counts the branch again once it has flowed for as long.
+neither released nor shut in an applier. It counts the branch again once it has flowed for as long. Hints on it wait for
+two seconds after a temporary clip, since flow is the mean of a heartbeat and is still low then.
 
 Sources: Sindou, Acevedo, Turjman 1998 (grades); neck_judge.h describes the geometry.
 */
@@ -323,9 +324,10 @@ class FaultStenosis final : public ExerciseRule, public WatchesLimits {
     reset();
   }
   std::vector<WatchedLimit> watched_limits() const override { return flows_; }
-  bool watches_now() const override { return !temporary_; }
+  bool watches_now() const override { return since_temporary_ >= flow_known_s; }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    const bool temporary = temporary_ = temporary_on(clips_.now());
+    const bool temporary = temporary_on(clips_.now());
+    since_temporary_ = temporary ? 0 : since_temporary_ + r.h;
     const std::vector<VesselState>& vessels = vessels_.now();
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const VesselState* b = find(vessels, names_[i]);
@@ -343,17 +345,19 @@ class FaultStenosis final : public ExerciseRule, public WatchesLimits {
     below_.assign(names_.size(), 0.0);
     above_.assign(names_.size(), 0.0);
     armed_.assign(names_.size(), 1);
-    temporary_ = false;
+    since_temporary_ = flow_known_s;
   }
 
  private:
+  /// Flow is the mean of the last heartbeat. For so long after a temporary clip it is still that below the clip, s.
+  static constexpr double flow_known_s = 2;
   Clips clips_;
   Vessels vessels_;
   int fault_ = 0;
   std::vector<std::string> names_;
-  std::vector<WatchedLimit> flows_;    ///< of the branches
-  bool temporary_ = false;             ///< a temporary clip is on
-  std::vector<double> below_, above_;  ///< for how long flow has been below the limit, and not, s
+  std::vector<WatchedLimit> flows_;        ///< of the branches
+  double since_temporary_ = flow_known_s;  ///< since no temporary clip has been on, s
+  std::vector<double> below_, above_;      ///< for how long flow has been below the limit, and not, s
   std::vector<char> armed_;
 };
 

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A hint when a metric leaves its band: the middle half of a group of sessions, as `insula bands --json` writes it. The
-// file is one of the scene's, so a recording has it. The metric is evaluated ten times a second.
+// file is one of the scene's, so a recording has it.
+//
+// The metric is evaluated here ten times a second, although publisher and recorder evaluate all metrics too. Those do
+// so only where somebody listens, and at other times: a run without processes evaluates none before its end. A hint on
+// their values would depend on who listens, and a rerun would not give its cues. An evaluation is cheap: it sums up
+// what was observed, and changes nothing but the values.
 #include <algorithm>
 
 #include "core/base/input_error.h"

@@ -13,9 +13,7 @@ and `last`. A thread behaves as a strand of <strand_springs>: tension only, cut 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
-#include "core/base/text.h"
 #include "core/registry/registry.h"
 
 namespace insula {
@@ -33,12 +31,9 @@ MaterialPoint nearest_vertex(const Surface& surface, const Vec3& place) {
 
 bool MarkedThreads::read_marks(PrepareContext& context) {
   marked_.assign(std::size_t(threads()), 0);
-  const auto words = split_blanks(marked());
-  for (const std::string_view word : words) {
-    int k = 0;
-    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), k);
-    if (end != word.data() + word.size() || code != std::errc() || k < 1 || k > threads()) {
-      error(context, marked, fmt::format("{} is no thread; there are the threads 1 to {}", in_quotes(word), threads()));
+  for (const int k : marked()) {
+    if (k > threads()) {
+      error(context, marked, fmt::format("{} is no thread; there are the threads 1 to {}", k, threads()));
       return false;
     }
     marked_[std::size_t(k - 1)] = 1;

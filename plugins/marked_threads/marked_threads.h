@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "core/params/list.h"
 #include "plugins/strand_springs/strand_springs.h"
 
 namespace insula {
@@ -15,8 +16,12 @@ class MarkedThreads final : public StrandSprings {
   Param<Vec<Length>> last{this, {.name = "last", .doc = "middle of the last thread"}};
   Param<int> threads{
       this, {.name = "threads", .fallback = "5", .min = "1", .max = "200", .doc = "their number, evenly apart"}};
-  Param<std::string> marked{
-      this, {.name = "marked", .doc = "those that are marked, counted from 1, separated by blanks: \"2 5\""}};
+  Param<List<int>> marked{this,
+                          {.name = "marked",
+                           .fallback = "",
+                           .min = "1",
+                           .max = "200",
+                           .doc = "those that are marked, counted from 1: \"2 5\"; none: no thread is"}};
 
   Channel<Scalar> marked_standing{this,
                                   {.name = "marked_standing",

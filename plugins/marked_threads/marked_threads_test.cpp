@@ -60,13 +60,15 @@ TEST(MarkedThreads, OnlyACutThroughAnUnmarkedOneIsWrong) {
 
 TEST(MarkedThreads, AMarkThatIsNoThreadIsAnError) {
   std::string text = read_file_bytes(example);
-  for (const char* wrong : {"2 6", "0", "two"}) {
+  const std::pair<const char*, const char*> wrong[] = {{"2 6", "6 is no thread; there are the threads 1 to 5"},
+                                                       {"0", "0 is outside the allowed range 1 to 200"},
+                                                       {"two", "\"two\" is not a whole number"}};
+  for (const auto& [marks, message] : wrong) {
     std::string changed = text;
-    changed.replace(changed.find("marked=\"2 4\""), 12, std::string("marked=\"") + wrong + "\"");
+    changed.replace(changed.find("marked=\"2 4\""), 12, std::string("marked=\"") + marks + "\"");
     const auto loaded = load_simulation_text(changed, example, test::builtin());
     EXPECT_FALSE(loaded.simulation);
-    EXPECT_NE(loaded.diagnostics.format().find("is no thread; there are the threads 1 to 5"), std::string::npos)
-        << loaded.diagnostics.format();
+    EXPECT_NE(loaded.diagnostics.format().find(message), std::string::npos) << loaded.diagnostics.format();
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Exercise 3 with its scripted motions: the good one in each shipped case, and each mistake.
 #include "tests/exercises/play_motion.h"
+#include "tests/exercises/told_hints.h"
 
 namespace insula {
 namespace {
@@ -14,8 +15,10 @@ INSTANTIATE_TEST_SUITE_P(Clipping, ShippedCase,
                          [](const auto& one) { return std::filesystem::path(one.param).stem().string(); });
 
 TEST_P(ShippedCase, AnAngledClipClosesTheNeckAndSparesTheBranches) {
-  test::Played o = test::play_motion(scenes / GetParam(), "steady");
+  test::ToldHints told;
+  test::Played o = test::play_motion(scenes / GetParam(), "steady", -1, told.listener());
   ASSERT_TRUE(o.ran);
+  told.expect_few();
   EXPECT_TRUE(o.finite);
   EXPECT_EQ(o.state, ExerciseState::done);
   EXPECT_GT(o.goals["clip"], 5);
@@ -32,8 +35,12 @@ TEST_P(ShippedCase, AnAngledClipClosesTheNeckAndSparesTheBranches) {
 }
 
 TEST(Clipping, AClipAcrossABranchIsAFault) {
-  test::Played o = test::play_motion(clipping_scene, "careless");
+  test::ToldHints told;
+  test::Played o = test::play_motion(clipping_scene, "careless", -1, told.listener());
   ASSERT_TRUE(o.ran);
+  for (const char* rule : {"brain_force", "vessel_force", "rupture", "stenosis"})
+    EXPECT_TRUE(told.first_fault.contains(rule)) << rule;
+  EXPECT_GE(told.expect_told(), 1);
   EXPECT_TRUE(o.finite);
   EXPECT_EQ(o.state, ExerciseState::running);
   EXPECT_LT(o.goals["clip"], 0);
@@ -93,16 +100,23 @@ TEST(Clipping, AFenestratedClipClosesTheNeckAroundABranch) {
 }
 
 TEST(Clipping, AShutClipThatIsPulledSlipsOff) {
-  test::Played o = test::play_motion(clipping_scene, "slipping");
+  test::ToldHints told;
+  test::Played o = test::play_motion(clipping_scene, "slipping", -1, told.listener());
   ASSERT_TRUE(o.ran);
+  EXPECT_GE(told.expect_told(), 1);
+  ASSERT_TRUE(told.first_cue.contains("vessel_hint"));
+  EXPECT_LE(told.first_cue["vessel_hint"], told.first_fault["slipped"] - 0.5) << "the pull on the vessel tells";
   EXPECT_LT(o.goals["clip"], 0);
   EXPECT_EQ(o.faults["slipped"], 1);
   EXPECT_EQ(o.events["clip_released"], 0);
 }
 
+// The clip presses the brain aside on its way, which is told first. The perforator is within the pause of that hint.
 TEST(Clipping, ATurnedClipClosesOnAPerforator) {
-  test::Played o = test::play_motion(clipping_scene, "perforator_caught");
+  test::ToldHints told;
+  test::Played o = test::play_motion(clipping_scene, "perforator_caught", -1, told.listener());
   ASSERT_TRUE(o.ran);
+  told.expect_told();
   EXPECT_LT(o.goals["clip"], 0);
   EXPECT_EQ(o.events["perforator_shut"], 1);
   EXPECT_EQ(o.faults["perforator_shut"], 1);

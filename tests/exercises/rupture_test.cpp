@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Exercise 4 with both scripted motions.
 #include "tests/exercises/play_motion.h"
+#include "tests/exercises/told_hints.h"
 
 namespace insula {
 namespace {
@@ -29,7 +30,11 @@ struct ProximalControl {
 
 TEST(Rupture, MasteredWithTemporaryAndFinalClip) {
   ProximalControl proximal;
-  test::Played o = test::play_motion(rupture_scene, "steady", -1, [&](const Simulation& s) { proximal.see(s); });
+  test::ToldHints told;
+  test::Played o = test::play_motion(rupture_scene, "steady", -1, [&](const Simulation& s) {
+    proximal.see(s);
+    told.listener()(s);
+  });
   ASSERT_TRUE(o.ran);
   EXPECT_TRUE(o.finite);
   EXPECT_EQ(o.state, ExerciseState::done);
@@ -48,6 +53,9 @@ TEST(Rupture, MasteredWithTemporaryAndFinalClip) {
   EXPECT_LT(proximal.rate, 0.1 * proximal.rate_before) << "what still bleeds drains from the branches";
   test::expect_well_clipped(o);
   test::expect_gentle(o);
+  told.expect_few();
+  told.expect_told();
+  EXPECT_FALSE(told.first_held.contains("stenosis_hint")) << "the flow is only not known yet after the temporary clip";
   EXPECT_GT(o.measures["tip_past_neck"], 0.1);
   EXPECT_GT(o.min_pressure, -40) << "Pa: the torn sac that a clip cuts off comes to the pressure outside";
 }
@@ -61,8 +69,11 @@ TEST(Rupture, OneHandAloneDoesNotMasterIt) {
 }
 
 TEST(Rupture, TimeRunsOutWhenNobodyClips) {
-  test::Played o = test::play_motion(rupture_scene, "late");
+  test::ToldHints told;
+  test::Played o = test::play_motion(rupture_scene, "late", -1, told.listener());
   ASSERT_TRUE(o.ran);
+  told.expect_told();
+  EXPECT_NEAR(told.first_cue["time_hint"], 241, 0.2) << "a minute before it is too late";
   EXPECT_TRUE(o.finite);
   EXPECT_EQ(o.state, ExerciseState::failed);
   EXPECT_NEAR(o.end, 301, 0.1);

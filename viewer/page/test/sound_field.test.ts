@@ -76,6 +76,8 @@ describe('hits of instruments', () => {
     expect([on(bone), on(cortex), on(plastic), on(2)]).toEqual([['bone'], ['soft'], ['polymer'], ['metal']]);
     expect(hitOf('bone', 'cortex', materials)).toBe('soft');
     expect(hitOf('cortex', 'skin', materials)).toBeNull();
+    // A tool on a cotton patty touches the cortex below it, since the patty carries no load.
+    expect(hitOf('steel', 'cotton', materials)).toBe(hitOf('steel', 'cortex', materials));
     expect(hitOf('constructor', 'steel', materials)).toBe('polymer');
   });
 
