@@ -21,6 +21,7 @@ const checks = [
   'access',
   'keyboard',
   'certificate',
+  'firefox',
 ];
 const skipped = 77;
 
