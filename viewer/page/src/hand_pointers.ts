@@ -5,6 +5,7 @@ import type { Microscope } from './camera';
 import { TwoFingers } from './gestures';
 import type { Hands } from './hands';
 import { FingerBesidePen, PenWrist } from './pen';
+import { wheelClicks, wheelZoom } from './wheel';
 
 const wheelM = 0.0008;
 /** A finger's way across the picture is coarser than a wheel's click. */
@@ -135,8 +136,7 @@ export class HandPointers {
 
   private wheel(e: WheelEvent): void {
     e.preventDefault();
-    const clicks = Math.max(-3, Math.min(3, (e.deltaY || e.deltaX) / 100));
-    if (e.shiftKey) this.hands.move({ out: clicks * wheelM });
-    else this.scope.zoom(1.12 ** clicks);
+    if (e.shiftKey) this.hands.move({ out: wheelClicks(e) * wheelM });
+    else this.scope.zoom(wheelZoom(e));
   }
 }

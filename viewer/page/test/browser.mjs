@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The browser of the end-to-end tests: headless Chromium with software rendering. Exit status 77: none here, skipped.
+// The browser of the end-to-end tests: headless Chromium with software rendering, or with INSULA_BROWSER=firefox
+// Firefox. Exit status 77: none here, skipped.
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { chromium } from 'playwright-core';
+import { launchFirefox } from './firefox.mjs';
 
 /** Software rendering is slow; INSULA_PATIENCE_MS is for those who wait for a failing test. */
 export const patience = { timeout: Number(process.env.INSULA_PATIENCE_MS ?? 300_000), polling: 250 };
 
 /** more: further arguments of Chromium. */
 export function launch(...more) {
+  if (process.env.INSULA_BROWSER === 'firefox') return launchFirefox();
   const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
   if (!existsSync(executablePath)) {
     console.log(`skipped: no browser at ${executablePath}`);

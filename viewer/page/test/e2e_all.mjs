@@ -22,6 +22,7 @@ const checks = [
   'access',
   'keyboard',
   'certificate',
+  'firefox',
 ];
 const skipped = 77;
 

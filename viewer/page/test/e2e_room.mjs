@@ -200,6 +200,6 @@ try {
   console.log(`${((performance.now() - began) / 1000).toFixed(0)} s`);
 } finally {
   await browser.close();
-  programs.end();
+  await programs.end();
   rmSync(folder, { recursive: true, force: true });
 }

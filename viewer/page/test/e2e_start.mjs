@@ -3,35 +3,15 @@
 // running one by keys and clicks, and finds his run on its card. Exit status 77: no browser, no programs or no
 // multicast, skipped.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { fileURLToPath } from 'node:url';
 import { check, launch, patience } from './browser.mjs';
+import { ownBus, Programs } from './programs.mjs';
 
-const root = fileURLToPath(new URL('../../..', import.meta.url));
-const programs = join(root, 'build/release/bin');
-if (!existsSync(join(programs, 'gateway'))) {
-  console.log(`skipped: no programs in ${programs}`);
-  process.exit(77);
-}
+const programs = new Programs();
 const folder = mkdtempSync(join(tmpdir(), 'insula_start_'));
-const bus = `udpm://239.255.76.67:${20000 + ((process.pid + 7000) % 20000)}?ttl=0`;
-const words = ['play', '--no-browser', '--no-reload', '--no-record', '--port', '0', '--data', folder];
-const play = spawn(join(programs, 'insula'), words, { cwd: root, env: { ...process.env, LCM_DEFAULT_URL: bus } });
-const address = await new Promise((resolve) => {
-  let said = '';
-  play.stdout.on('data', (d) => {
-    said += d;
-    const found = /viewer at (\S+)/.exec(said);
-    if (found) resolve(found[1]);
-  });
-  play.once('exit', (status) => {
-    console.log(`skipped: insula play ended with ${status}: ${said}`);
-    process.exit(77);
-  });
-});
+const { address } = await programs.play(folder, ['--no-record'], ownBus(7000));
 
 const browser = await launch();
 const context = await browser.newContext({ viewport: { width: 1366, height: 768 } });
@@ -94,9 +74,6 @@ try {
   assert.deepEqual(errors, []);
 } finally {
   await browser.close();
-  play.removeAllListeners('exit');
-  const ended = new Promise((resolve) => play.once('exit', resolve));
-  play.kill('SIGINT');
-  await ended;
+  await programs.end();
   rmSync(folder, { recursive: true, force: true });
 }

@@ -111,6 +111,6 @@ try {
   check('a trainee rings too, and the other side may decline');
 } finally {
   await browser.close();
-  programs.end();
+  await programs.end();
   rmSync(folder, { recursive: true, force: true });
 }

@@ -2,6 +2,7 @@
 // Mouse, pen and fingers move the microscope alone: drag turns it, with Shift or the right button it moves aside, the
 // wheel or two fingers zoom, a double click looks there.
 import type { Stage } from '../stage';
+import { wheelZoom } from '../wheel';
 
 export function controlMicroscope(stage: Stage): void {
   const { canvas, scope } = stage;
@@ -31,7 +32,7 @@ export function controlMicroscope(stage: Stage): void {
     'wheel',
     (e) => {
       e.preventDefault();
-      scope.zoom(Math.exp(e.deltaY * 0.001));
+      scope.zoom(wheelZoom(e));
     },
     { passive: false },
   );
