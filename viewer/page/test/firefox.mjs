@@ -9,6 +9,7 @@ import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import playwright from 'playwright-core';
+import { waitFor } from './patience.mjs';
 
 const firefox = process.env.FIREFOX ?? '/usr/bin/firefox-esr';
 const screen = '/usr/bin/Xvfb';
@@ -25,8 +26,8 @@ async function openScreen() {
   return { child, display: `:${String(said).trim()}` };
 }
 
-/** A sound device that drops what it is given: its process, and where programs find it. */
-function openSound(folder) {
+/** A sound device that drops what it is given: its process, and where programs find it. It listens already. */
+async function openSound(folder) {
   const socket = join(folder, 'sound');
   const modules = ['module-null-sink', `module-native-protocol-unix auth-anonymous=1 socket=${socket}`];
   const words = ['-n', '--daemonize=no', '--exit-idle-time=-1', '--use-pid-file=no', '--disable-shm=yes'];
@@ -35,6 +36,8 @@ function openSound(folder) {
     env: { ...process.env, ...own },
     stdio: 'ignore',
   });
+  // A browser that finds no device at its start does not look again.
+  await waitFor('sound device', () => existsSync(socket));
   return { child, env: { ...own, PULSE_SERVER: `unix:${socket}` } };
 }
 
@@ -45,7 +48,7 @@ export async function launchFirefox() {
     process.exit(77);
   }
   const folder = mkdtempSync(join(tmpdir(), 'insula_firefox_'));
-  const sound = openSound(folder);
+  const sound = await openSound(folder);
   const { child, display } = await openScreen();
   const end = () => {
     for (const each of [sound.child, child]) each.kill();
