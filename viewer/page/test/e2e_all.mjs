@@ -18,6 +18,7 @@ const checks = [
   'start',
   'room',
   'voice',
+  'layout',
   'access',
   'keyboard',
   'certificate',
