@@ -19,6 +19,7 @@ const checks = [
   'room',
   'desk',
   'voice',
+  'layout',
   'access',
   'keyboard',
   'certificate',

@@ -72,6 +72,30 @@ const course = {
   ],
 };
 
+const certificate = {
+  ...{ person: 'P07', curriculum: course.title, content: '3f9a12c4', version: '0.1.0', digest: '5d41402abc4b2a76' },
+  ...{ began_ms: began, passed_ms: began + 30 * day },
+  tasks: ['With the guide', 'Test'].map((title) => ({
+    ...{ module: 'Opening the Sylvian fissure', title, gates: [goals, thrice], attempts_to_level: 4 },
+    ...{ passed_ms: began + 7 * day, runs: [passedRun, passedRun] },
+  })),
+};
+
+const station = (number, name, error, more) => ({
+  ...{ number, given: true, name, url: `http://192.0.2.${number}:8080/`, error, picture: 0, station: more },
+});
+const room = {
+  stations: [
+    station(1, 'Table 1', '', {
+      ...{ person: 'P07', title: 'Clipping', state: 'running', time_s: 95, frame_age_ms: 20 },
+      alarms: [{ kind: 'fault', text: 'A strand was torn', time_s: 80 }],
+    }),
+    station(2, 'Table 2', 'it does not answer', {}),
+  ],
+  found: [{ name: 'Table 3', url: 'http://192.0.2.3:8080/' }],
+  search_error: '',
+};
+
 /** Answers by the last part of the path below api/. */
 export const placeAnswers = () => ({
   exercises: shippedExercises(),
@@ -81,5 +105,7 @@ export const placeAnswers = () => ({
   state: { scene: run.scene, person: 'P07', state: 'running', text: '', request: '' },
   curricula: { state: 'ready', problem: '', curricula: [{ id: course.id, title: course.title, text: course.text }] },
   curriculum: course,
+  certificate,
+  room,
   login: { access: 'none' },
 });

@@ -19,7 +19,8 @@ const faults = [
   { id: 'frontal_force', text: 'Frontal lobe pressed too hard' },
   { id: 'temporal_force', text: 'Temporal lobe pressed too hard' },
 ];
-const exercise = {
+/** What the mock's engine says is in no catalogue. */
+export const exercise = {
   id: 'sylvian_fissure',
   title: 'Sylvian fissure',
   text: 'Retract with the suction in the left hand; cut the strands from the surface to the depth with the right.',
