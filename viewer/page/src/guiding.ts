@@ -9,6 +9,7 @@ import { toolCommands } from './hud/commands';
 import type { GuideView } from './hud/guide_panel';
 import type { RenderFrame } from './lcm';
 import { TargetGhost } from './target_ghost';
+import { listed } from './languages/lists';
 import { said } from './languages/said';
 import { text } from './languages/text';
 
@@ -149,5 +150,5 @@ export function buttonsToDo(target: Buttons, now: Buttons): string {
     if (!wanted) return [text('let button {button} go', { button: b })];
     return [b === 1 ? text('hold button 1 (Space)') : text('hold button 2 (B)')];
   });
-  return parts.length === 0 ? '' : text('At the target: {what}', { what: parts.join(', ') });
+  return parts.length === 0 ? '' : text('At the target: {what}', { what: listed(parts) });
 }

@@ -21,6 +21,9 @@ export function layoutFaults() {
     const style = getComputedStyle(e);
     const size = parseFloat(style.fontSize);
     if (size < 11.99 && !e.closest('sub, sup')) faults.push(`${name(e)}: text of ${size} px`);
+    const panel = e.closest('.panel')?.getBoundingClientRect();
+    const { left, right } = e.getBoundingClientRect();
+    if (panel && (right > panel.right + 1 || left < panel.left - 1)) faults.push(`${name(e)}: sticks out of its panel`);
     if (style.display !== 'inline' && style.overflowX !== 'visible' && e.scrollWidth > e.clientWidth + 1)
       if (!['auto', 'scroll'].includes(style.overflowX) && !e.matches('select, option'))
         faults.push(`${name(e)}: text is cut, ${e.scrollWidth} of ${e.clientWidth} px`);

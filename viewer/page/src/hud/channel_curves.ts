@@ -7,6 +7,7 @@ import { byComponent, type Channels, channelText, shortName } from '../step_data
 import type { ChannelData } from '../step_data/declarations';
 import { TimeChart } from './curves';
 import { el, setText } from './dom';
+import { listed } from '../languages/lists';
 import { said } from '../languages/said';
 
 const period = 0.05;
@@ -94,7 +95,7 @@ export class ChannelCurves {
     this.drawn = chartGroups(this.all.filter((c) => this.ticked.has(c))).map((channels) => {
       const { component, display } = channels[0]!;
       const names = channels.map(nameOf);
-      const chart = new TimeChart(`${spoken(component)} ${names.join(', ')}`, display.unit, names);
+      const chart = new TimeChart(`${spoken(component)} ${listed(names)}`, display.unit, names);
       const ids = channels.map((c) => c.id).join(' ');
       const root = el('div', { 'data-channels': ids }, el('h2', {}, spoken(component)), chart.root);
       return { component, channels, chart, root };

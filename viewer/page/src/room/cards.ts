@@ -2,6 +2,7 @@
 // A card for each station: picture, who, what, how long, and what went wrong.
 import { el, setText } from '../hud/dom';
 import { clockText } from '../hud/state';
+import { said } from '../languages/said';
 import { text } from '../languages/text';
 import { type Standing, standingOf, type StationView } from './overview';
 
@@ -22,7 +23,9 @@ export function alarmLines(alarms: StationView['alarms']): string[] {
     last.delete(what); // so that the latest stands last
     last.set(what, { timeS, count });
   }
-  return [...last].map(([what, { timeS, count }]) => `${clockText(timeS)} ${what}${count > 1 ? ` ×${count}` : ''}`);
+  return [...last].map(
+    ([what, { timeS, count }]) => `${clockText(timeS)} ${said(what)}${count > 1 ? ` ×${count}` : ''}`,
+  );
 }
 
 /** Of a station: "192.0.2.7:8080". */
@@ -70,7 +73,7 @@ export class StationCard {
       if (s.picture > 0) this.picture.src = this.pictureUrl(s.picture);
     }
     setText(this.person, s.person === '' ? text('guest') : s.person);
-    setText(this.title, s.title);
+    setText(this.title, said(s.title));
     setText(this.clock, standing === 'away' || standing === 'idle' ? '' : clockText(s.timeS));
     setText(this.standing, standingText(s, standing));
     const lines = alarmLines(s.alarms);

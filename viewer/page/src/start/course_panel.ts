@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The curriculum that somebody follows: what is next as one button, and all modules with their tasks and gates.
 import { el } from '../hud/dom';
+import { listed } from '../languages/lists';
 import { momentText } from '../languages/numbers';
 import { languageTag, text } from '../languages/text';
 import type { Api } from './api';
@@ -224,7 +225,7 @@ export class CoursePanel {
 
   private lockText(by: readonly string[], titles: ReadonlyMap<string, string>): string {
     return text('Opens when these have been passed: {titles}', {
-      titles: by.map((id) => titles.get(id) ?? id).join(', '),
+      titles: listed(by.map((id) => titles.get(id) ?? id)),
     });
   }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The condition of a gate, as training/progress/curriculum_json.h writes it, checked and in the reader's words.
+import { listed } from '../languages/lists';
 import { quantity, significant } from '../languages/numbers';
 import { said } from '../languages/said';
 import { text } from '../languages/text';
@@ -51,7 +52,7 @@ export function limitsText({ atLeast, atMost, unit }: Pick<Condition, 'atLeast' 
 }
 
 function faultsText(c: Condition): string {
-  const faults = c.faults.map(said).join(', ');
+  const faults = listed(c.faults.map(said));
   if (c.mostFaults > 0)
     return c.faults.length > 0
       ? text('At most {count} of these faults: {faults}', { count: c.mostFaults, faults })
@@ -91,4 +92,4 @@ export function rowText({ inARow, withinDays }: Condition): string {
 }
 
 /** All that a gate asks for. */
-export const gateText = (c: Condition): string => [conditionText(c), rowText(c)].filter((w) => w !== '').join(', ');
+export const gateText = (c: Condition): string => listed([conditionText(c), rowText(c)].filter((w) => w !== ''));

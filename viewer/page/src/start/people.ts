@@ -3,6 +3,7 @@
 import { browserStore } from '../browser_store';
 import { el } from '../hud/dom';
 import type { Api, Person } from './api';
+import { listed } from '../languages/lists';
 import { text } from '../languages/text';
 
 /** What is kept and what is read. */
@@ -97,11 +98,7 @@ export class People {
         p.role === 'other' ? '' : (roles[p.role] ?? p.role),
         p.year > 0 ? text('year {year}', { year: p.year }) : '',
       ].filter((t) => t !== '');
-      return el(
-        'option',
-        { value: p.pseudonym },
-        more.length > 0 ? `${p.pseudonym} (${more.join(', ')})` : p.pseudonym,
-      );
+      return el('option', { value: p.pseudonym }, more.length > 0 ? `${p.pseudonym} (${listed(more)})` : p.pseudonym);
     });
     this.select.replaceChildren(guest, ...others);
     this.select.value = chosen;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the start page says of runs.
 import type { History, Run } from './api';
+import { listed } from '../languages/lists';
 import { text } from '../languages/text';
 
 export const groupTitles: Readonly<Record<string, string>> = {
@@ -27,7 +28,7 @@ export function resultText(run: Run): string {
     run.faults === 0
       ? text('no fault')
       : text('{count, plural, one {# fault} other {# faults}}', { count: run.faults });
-  return [goalsText(run), faults, durationText(run.durationS)].join(', ');
+  return listed([goalsText(run), faults, durationText(run.durationS)]);
 }
 
 /** 'new', 'begun', or 'done': all goals were reached once. */
