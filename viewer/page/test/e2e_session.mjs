@@ -87,7 +87,6 @@ try {
     [1920, 1080, 0.6],
   ]) {
     await page.setViewportSize({ width, height });
-    await page.evaluate(() => document.querySelectorAll('.toast').forEach((t) => t.remove()));
     const { free, lost } = await page.evaluate(layout);
     assert.ok(free >= least, `${width}x${height}: ${Math.round(100 * free)} % of the window show the field`);
     assert.deepEqual(lost, [], `${width}x${height}: out of reach`);
@@ -119,6 +118,8 @@ function endPanel() {
 
 /** Share of the window that no panel covers, and controls that cannot be brought into it. */
 function layout() {
+  // They go by themselves.
+  document.querySelectorAll('.toast').forEach((t) => t.remove());
   const box = (e) => e.getBoundingClientRect();
   const visible = (e) => e.checkVisibility({ opacityProperty: true });
   const panels = [...document.querySelectorAll('.panel, .touch button, .tabs button')].filter(visible).map(box);
