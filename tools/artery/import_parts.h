@@ -31,13 +31,20 @@ class WallPoints {
 /// its length over the squared distance to the wall, so that they keep to the middle.
 std::vector<NamedCurve> grid_centrelines(const Surface& surface, const WallPoints& wall);
 
-/// The largest connected set of bulging vertices, if it is large enough, becomes the sac; the plane through its border
-/// is the neck.
-void find_sac(Vessel& vessel, std::vector<char> bulging);
+/// A vertex nearer to a centreline than so many of its vessel's radii is of that vessel's wall.
+inline constexpr double of_a_vessel = 1.15;
+/// The vertices of the sac. They lie within the shortest closed line that parts the top of the largest bulge from the
+/// walls of all vessels. Empty when nothing bulges so far.
+/// radii: of each vertex, its distance from the nearest centreline, in radii of that vessel.
+/// bulge: where a bulge begins, in the same unit.
+std::vector<char> sac_by_cut(const Surface& surface, const std::vector<double>& radii, double bulge);
+/// The given vertices become the sac. The plane through their border is the neck.
+void find_sac(Vessel& vessel, const std::vector<char>& of_sac);
 /// What lies beyond a plane becomes the sac, what lies near it the neck. `vessel` has no sac yet. Throws
 /// std::runtime_error when the plane parts no dome from the vessel.
 void sac_beyond(Vessel& vessel, const NeckPlane& plane);
-/// The plane near that of the vessel's neck whose section is narrowest, not far up the dome.
-NeckPlane narrowest_neck(const Vessel& vessel);
+/// The plane near that of the vessel's neck whose section is narrowest, not far up the dome, with no wall of a vessel
+/// on its dome side. radii: as above.
+NeckPlane narrowest_neck(const Vessel& vessel, const std::vector<double>& radii);
 
 }  // namespace insula::artery

@@ -9,7 +9,8 @@
 namespace insula::artery {
 namespace {
 
-constexpr double bulge = 1.45;  // times the vessel's radius from its centreline: no vessel any more
+// Times the vessel's radius from its centreline: no vessel any more. A flat sac has the lower ones only.
+constexpr double bulges[] = {1.45, 1.35, 1.27};
 
 Vec3 nearest_on_segments(const std::vector<std::array<Vec3, 2>>& segments, const Vec3& p) {
   Vec3 best = p;
@@ -37,8 +38,8 @@ std::vector<std::vector<std::array<Vec3, 2>>> rims(const Surface& s) {
   return out;
 }
 
-/// Regions of the vessels by the nearest centreline; what bulges out of all of them comes back marked.
-std::vector<char> name_vessels(Vessel& v) {
+/// Regions of the vessels by the nearest centreline. Returns how far each vertex is from it, in radii of that vessel.
+std::vector<double> name_vessels(Vessel& v) {
   std::vector<double> usual;  // a vessel's radius: the median, so that the sac beside it does not count
   for (const NamedCurve& c : v.centrelines) {
     std::vector<double> r = c.curve.radius;
@@ -46,7 +47,7 @@ std::vector<char> name_vessels(Vessel& v) {
     usual.push_back(r[r.size() / 2]);
     v.regions.push_back(c.region);
   }
-  std::vector<char> out;
+  std::vector<double> out;
   for (const Vec3& p : v.wall.mesh.vertices) {
     double best = 1e300;
     int region = 0;
@@ -59,9 +60,20 @@ std::vector<char> name_vessels(Vessel& v) {
       }
     }
     v.region.push_back(region);
-    out.push_back(best > bulge);
+    out.push_back(best);
   }
   return out;
+}
+
+void propose_sac(Vessel& v, const std::vector<double>& radii, bool narrow_neck) {
+  for (const double bulge : bulges) {
+    Vessel proposal = v;
+    find_sac(proposal, sac_by_cut(v.wall, radii, bulge));
+    if (!proposal.neck) continue;
+    if (narrow_neck) sac_beyond(v, narrowest_neck(proposal, radii));
+    else v = std::move(proposal);
+    return;
+  }
 }
 
 }  // namespace
@@ -104,15 +116,9 @@ Vessel vessel_of(Surface original, const ImportOptions& options) {
   remesh(v.wall, guide, 10);
   v.picture = subdivided(v.wall, guide).mesh;
   v.centrelines = grid_centrelines(v.wall, WallPoints(v.wall));
-  const std::vector<char> bulging = name_vessels(v);
-  if (options.neck) {
-    sac_beyond(v, *options.neck);
-  } else {
-    Vessel proposal = v;
-    find_sac(proposal, bulging);
-    if (options.narrow_neck && proposal.neck) sac_beyond(v, narrowest_neck(proposal));
-    else v = std::move(proposal);
-  }
+  const std::vector<double> radii = name_vessels(v);
+  if (options.neck) sac_beyond(v, *options.neck);
+  else propose_sac(v, radii, options.narrow_neck);
   const std::vector<VertexKind> kinds = vertex_kinds(v.wall);
   v.regions.push_back("ends");
   for (std::size_t i = 0; i < kinds.size(); ++i)

@@ -10,9 +10,11 @@
 namespace insula::artery {
 namespace {
 
-constexpr double min_sac_share = 0.03;    // of the surface's vertices
-constexpr double neck_half_width = 0.45;  // mm, to either side of the neck's plane
-constexpr double min_sac_vertices = 12;
+constexpr double widest_half_band = 0.45;  // mm, of the neck, to either side of its plane
+constexpr double band_of_height = 0.3;     // of a low dome's height, the same
+constexpr double most_of_bleb = 0.3;       // of the sac's vertices that the weak spot may take
+constexpr std::size_t min_sac_vertices = 12;
+constexpr double most_of_vessels = 0.02;  // of a dome's vertices, such ones
 
 double height(const Vec3& p, const NeckPlane& plane) { return (p - plane.centre).dot(plane.normal); }
 
@@ -115,20 +117,13 @@ void add_sac_line(Vessel& v, const std::vector<int>& sac) {
 
 }  // namespace
 
-void find_sac(Vessel& v, std::vector<char> bulging) {
+void find_sac(Vessel& v, const std::vector<char>& of_sac) {
   const TriMesh& m = v.wall.mesh;
   const auto next = neighbours(m);
   std::vector<int> sac;
-  for (std::size_t start = 0; start < bulging.size(); ++start) {
-    if (!bulging[start]) continue;
-    std::vector<int> set{int(start)};
-    bulging[start] = 0;
-    for (std::size_t i = 0; i < set.size(); ++i)
-      for (const int n : next[std::size_t(set[i])])
-        if (bulging[std::size_t(n)]) bulging[std::size_t(n)] = 0, set.push_back(n);
-    if (set.size() > sac.size()) sac = set;
-  }
-  if (double(sac.size()) < min_sac_share * double(m.vertices.size())) return;
+  for (std::size_t i = 0; i < of_sac.size(); ++i)
+    if (of_sac[i]) sac.push_back(int(i));
+  if (sac.size() < min_sac_vertices) return;
   const int sac_region = int(v.regions.size()) + 1, neck_region = sac_region - 1;
   v.regions.insert(v.regions.end(), {"neck", "sac"});
   for (const int i : sac) v.region[std::size_t(i)] = sac_region;
@@ -159,12 +154,15 @@ void sac_beyond(Vessel& v, const NeckPlane& given) {
   NeckPlane plane{given.centre, given.normal.normalized()};
   Loop loop;
   const std::vector<int> dome = dome_beyond(m, next, plane, loop);
-  if (double(dome.size()) < min_sac_vertices)
+  if (dome.size() < min_sac_vertices)
     throw std::runtime_error("the neck's plane cuts off no dome: nothing of the wall lies beyond it");
   if (holds_a_cap(v.wall, dome))
     throw std::runtime_error(
         "the neck's plane parts no dome from the vessel: an opening lies on its dome side; turn the plane, or move it "
         "towards the dome");
+  double top = 0;
+  for (const int i : dome) top = std::max(top, height(m.vertices[std::size_t(i)], plane));
+  const double half_band = std::min(widest_half_band, band_of_height * top);
   const int neck_region = int(v.regions.size()), sac_region = neck_region + 1;
   v.regions.insert(v.regions.end(), {"neck", "sac"});
   std::vector<int> ring;  // grows from the dome's side of the plane to the other
@@ -172,22 +170,22 @@ void sac_beyond(Vessel& v, const NeckPlane& given) {
     const auto& around = next[std::size_t(i)];
     const bool border = std::any_of(around.begin(), around.end(),
                                     [&](int n) { return height(m.vertices[std::size_t(n)], plane) <= 0; });
-    const bool near = border || height(m.vertices[std::size_t(i)], plane) <= neck_half_width;
+    const bool near = border || height(m.vertices[std::size_t(i)], plane) <= half_band;
     v.region[std::size_t(i)] = near ? neck_region : sac_region;
     if (near) ring.push_back(i);
   }
   double reach = 0;  // a branch that runs along in the plane is no neck
-  for (const int i : ring) reach = std::max(reach, (m.vertices[std::size_t(i)] - loop.centre).norm() + neck_half_width);
+  for (const int i : ring) reach = std::max(reach, (m.vertices[std::size_t(i)] - loop.centre).norm() + half_band);
   for (std::size_t k = 0; k < ring.size(); ++k)
     for (const int n : next[std::size_t(ring[k])])
-      if (v.region[std::size_t(n)] < neck_region && height(m.vertices[std::size_t(n)], plane) > -neck_half_width &&
+      if (v.region[std::size_t(n)] < neck_region && height(m.vertices[std::size_t(n)], plane) > -half_band &&
           (m.vertices[std::size_t(n)] - loop.centre).norm() < reach)
         v.region[std::size_t(n)] = neck_region, ring.push_back(n);
   v.neck = Neck{loop.centre, plane.normal, 2 * std::sqrt(loop.area / std::numbers::pi)};
   add_sac_line(v, dome);
 }
 
-NeckPlane narrowest_neck(const Vessel& v) {
+NeckPlane narrowest_neck(const Vessel& v, const std::vector<double>& radii) {
   const TriMesh& m = v.wall.mesh;
   const auto next = neighbours(m);
   const NeckPlane first{v.neck->centre, v.neck->normal};
@@ -196,7 +194,10 @@ NeckPlane narrowest_neck(const Vessel& v) {
   const auto cost = [&](const NeckPlane& plane, double up) {
     Loop loop;
     const std::vector<int> dome = dome_beyond(m, next, plane, loop);
-    if (double(dome.size()) < min_sac_vertices || holds_a_cap(v.wall, dome)) return 1e300;
+    if (dome.size() < min_sac_vertices || holds_a_cap(v.wall, dome)) return 1e300;
+    const auto of_vessels =
+        std::count_if(dome.begin(), dome.end(), [&](int i) { return radii[std::size_t(i)] < of_a_vessel; });
+    if (double(of_vessels) > most_of_vessels * double(dome.size())) return 1e300;
     return loop.area * (1 + 0.5 * std::abs(up) / top);  // every dome is narrower at its top: going there costs
   };
   struct State {
@@ -238,6 +239,14 @@ void add_bleb(Vessel& v, double radius) {
   if (sac == v.regions.end() || std::find(v.regions.begin(), v.regions.end(), "bleb") != v.regions.end()) return;
   const int sac_region = int(sac - v.regions.begin()), ends = int(v.regions.size()) - 1;
   const Vec3 dome = v.centrelines.back().curve.points.back();
+  std::vector<double> distances;  // of the sac's vertices from the tip
+  for (std::size_t i = 0; i < v.region.size(); ++i)
+    if (v.region[i] == sac_region) distances.push_back((v.wall.mesh.vertices[i] - dome).norm());
+  if (distances.empty()) return;
+  // A small sac does not become all weak spot.
+  const auto last = distances.begin() + std::ptrdiff_t(most_of_bleb * double(distances.size()));
+  std::nth_element(distances.begin(), last, distances.end());
+  radius = std::min(radius, *last);
   v.regions.insert(v.regions.begin() + ends, "bleb");  // the ends stay last
   for (std::size_t i = 0; i < v.region.size(); ++i) {
     if (v.region[i] == ends) v.region[i] = ends + 1;

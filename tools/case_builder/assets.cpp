@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "core/base/input_error.h"
 #include "tools/case_builder/scenes.h"
 
@@ -10,6 +12,16 @@ void copy_all(const fs::path& from, const fs::path& to) {
   fs::create_directories(to.parent_path(), error);
   fs::copy(from, to, fs::copy_options::recursive | fs::copy_options::overwrite_existing, error);
   if (error) throw InputError(to.string() + ": cannot be written: " + error.message());
+}
+
+/// Clips of the library that a former choice has brought. What an author has added stays.
+void remove_unwanted_clips(const fs::path& library, const fs::path& copies, const std::vector<std::string>& wanted) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(library, ignored)) {
+    const fs::path name = entry.path().filename();
+    if (std::find(wanted.begin(), wanted.end(), name.string()) == wanted.end() && entry.is_directory())
+      fs::remove_all(copies / name, ignored);
+  }
 }
 
 }  // namespace
@@ -32,6 +44,7 @@ Assets link_assets(const CaseFolder& folder, const fs::path& project, const std:
   for (const char* tool : {"suction", "dissector", "clip_applier", "retractor", "micro_doppler"})
     copy_all(root / "meshes/instruments" / tool, here / "meshes/instruments" / tool);
   for (const std::string& clip : clips) copy_all(root / "meshes/clips" / clip, here / "meshes/clips" / clip);
+  remove_unwanted_clips(root / "meshes/clips", here / "meshes/clips", clips);
   copy_all(root / "meshes/window", here / "meshes/window");
   return out;
 }

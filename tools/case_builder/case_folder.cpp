@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/case_builder/case_folder.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -116,6 +118,8 @@ void write_options(const CaseFolder& folder, const Options& options) {
 }
 
 double rounded(double value) { return std::round(value * 1e5) / 1e5 + 0.0; }
+std::string place(const Vec3& p) { return fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z()); }
+
 Json to_json(const Vec3& p) { return Json::array({rounded(p[0]), rounded(p[1]), rounded(p[2])}); }
 Vec3 vec3_from(const Json& j) {
   if (!j.is_array() || j.size() != 3) throw InputError("a point has three numbers");

@@ -48,6 +48,8 @@ TriMesh read_ply(const fs::path& file);
 
 /// Rounded so that the last bits of a sum do not show.
 double rounded(double value);
+/// "(x, y, z)" in tenths of a millimetre.
+std::string place(const Vec3& p);
 Json to_json(const Vec3& p);
 Vec3 vec3_from(const Json& json);
 

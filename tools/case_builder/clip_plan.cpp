@@ -9,6 +9,7 @@
 
 #include "core/base/input_error.h"
 #include "plugins/clip/clip_data.h"
+#include "tools/case_builder/neck_frame.h"
 #include "tools/case_builder/place.h"
 
 namespace insula::case_builder {
@@ -74,86 +75,84 @@ ApplierPose applier_pose(const ClipShape& clip, const Vec3& middle, const Vec3& 
 }
 
 NeckSize neck_size(const artery::Vessel& v, const Vec3& along) {
-  const artery::Neck& neck = *v.neck;
-  const Vec3 closing = neck.normal.cross(along);
-  const auto index = [&](const char* name) {
-    return int(std::find(v.regions.begin(), v.regions.end(), name) - v.regions.begin());
-  };
-  const int n = index("neck"), s = index("sac");
-  const auto of_sac = [&](int i) { return v.region[std::size_t(i)] == n || v.region[std::size_t(i)] == s; };
+  const Vec3 closing = v.neck->normal.cross(along);
   NeckSize out;
   double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
-  for (const auto& t : v.wall.mesh.triangles) {
-    if (!of_sac(t[0]) && !of_sac(t[1]) && !of_sac(t[2])) continue;
-    std::vector<Vec3> ends;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 a = v.wall.mesh.vertices[std::size_t(t[k])] - neck.centre,
-                 b = v.wall.mesh.vertices[std::size_t(t[(k + 1) % 3])] - neck.centre;
-      const double ha = a.dot(neck.normal), hb = b.dot(neck.normal);
-      if ((ha > 0) != (hb > 0)) ends.push_back(a + ha / (ha - hb) * (b - a));
-    }
-    if (ends.size() != 2) continue;
-    out.perimeter += (ends[1] - ends[0]).norm();
-    for (const Vec3& p : ends) {
-      low[0] = std::min(low[0], p.dot(along)), high[0] = std::max(high[0], p.dot(along));
-      low[1] = std::min(low[1], p.dot(closing)), high[1] = std::max(high[1], p.dot(closing));
+  for (const auto& ends : neck_line(v)) {
+    const Vec3 p = ends[0].in(v.wall.mesh.vertices), q = ends[1].in(v.wall.mesh.vertices);
+    out.perimeter += (q - p).norm();
+    for (const Vec3& x : {p, q}) {
+      low[0] = std::min(low[0], x.dot(along)), high[0] = std::max(high[0], x.dot(along));
+      low[1] = std::min(low[1], x.dot(closing)), high[1] = std::max(high[1], x.dot(closing));
     }
   }
   out.along = high[0] - low[0], out.across = high[1] - low[1];
   return out;
 }
 
-ClipPlan plan_clip(const artery::Vessel& v, const Solid& floor, const std::vector<ClipShape>& clips, const Options& o,
-                   std::vector<Note>& notes) {
+void ClipPlan::lay(const artery::Neck& neck, const BladePlacement& where) {
+  at = where;
+  const Vec3 outward = Eigen::AngleAxisd(at.turn * degree, neck.normal) * across(to_surgeon, neck.normal);
+  const Vec3 closing = (at.mirrored ? -1.0 : 1.0) * neck.normal.cross(outward);
+  pose = applier_pose(clip, neck.centre + at.lift * neck.normal - at.slide * outward, -outward, closing);
+}
+
+bool ClipPlan::too_short() const { return clip.blade < needed - past; }
+bool ClipPlan::kept_back() const { return drawn_back > past; }
+
+std::vector<ClipPlan> clip_plans(const artery::Vessel& v, const Solid& floor, const std::vector<ClipShape>& clips,
+                                 const Options& o) {
   const artery::Neck& neck = *v.neck;
-  const Vec3 facing = across(to_surgeon, neck.normal);
-  ClipPlan best;
-  double least = 1e300;
-  bool known = false;
-  for (const ClipShape& clip : clips) {
-    if (!o.clip.empty() ? clip.name != o.clip : clip.kind == "temporary" || clip.kind == "mini_temporary") continue;
-    known = true;
-    for (double turn = -60; turn <= 60; turn += 15) {
-      const double angle = o.turn.value_or(turn);
-      const Vec3 outward = Eigen::AngleAxisd(angle * degree, neck.normal) * facing;
-      const NeckSize size = neck_size(v, outward);
-      // Closed, the neck's wall lies double: it is half its perimeter wide.
-      const double needed = 0.5 * size.perimeter + past, lift = o.lift.value_or(default_lift(neck.diameter));
+  std::vector<ClipPlan> out;
+  for (double turn = -60; turn <= 60; turn += 15) {
+    const double angle = o.turn.value_or(turn);
+    const Vec3 outward = Eigen::AngleAxisd(angle * degree, neck.normal) * across(to_surgeon, neck.normal);
+    const NeckSize size = neck_size(v, outward);
+    // Closed, the neck's wall lies double: it is half its perimeter wide.
+    const double needed = 0.5 * size.perimeter + past, lift = o.lift.value_or(default_lift(neck.diameter));
+    for (const ClipShape& clip : clips) {
+      if (!o.clip.empty() ? clip.name != o.clip : clip.kind == "temporary" || clip.kind == "mini_temporary") continue;
       const double slide = o.slide.value_or(std::max(0.0, needed - 0.5 * clip.blade - 0.25 * size.perimeter + 0.7));
-      for (const double side : {1.0, -1.0}) {
-        const Vec3 closing = side * neck.normal.cross(outward);
-        const Vec3 wanted = neck.centre + lift * neck.normal - slide * outward;
-        const double back = o.slide ? 0 : way_back(floor, clip, wanted, -outward);
-        const ApplierPose pose = applier_pose(clip, wanted + back * outward, -outward, closing);
-        const double off = std::acos(std::clamp(pose.shaft.dot(to_surgeon), -1.0, 1.0)) / degree;
-        const double cost = std::pow(off / 12, 2) + std::pow(angle / 60, 2) + 1.2 * std::max(0.0, needed - clip.blade) +
-                            0.35 * std::max(0.0, clip.blade - needed - 1) +
-                            1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening) + 1.2 * back;
-        if (cost < least) least = cost, best = {clip, pose, needed, off, lift, slide - back, angle, back, false};
+      const Vec3 middle = neck.centre + lift * neck.normal - slide * outward;
+      const double back = o.slide ? 0 : way_back(floor, clip, middle, -outward);
+      for (const bool mirrored : {false, true}) {
+        ClipPlan plan;
+        plan.clip = clip, plan.needed = needed, plan.drawn_back = back;
+        plan.lay(neck, {lift, slide - back, angle, mirrored});
+        plan.off_view = std::acos(std::clamp(plan.pose.shaft.dot(to_surgeon), -1.0, 1.0)) / degree;
+        plan.cost = std::pow(plan.off_view / 12, 2) + std::pow(angle / 60, 2) +
+                    1.2 * std::max(0.0, needed - clip.blade) + 0.35 * std::max(0.0, clip.blade - needed - 1) +
+                    1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening) + 1.2 * back;
+        out.push_back(std::move(plan));
       }
-      if (o.turn) break;
     }
+    if (o.turn) break;
   }
-  if (!known)
+  if (out.empty())
     throw InputError("--clip: the library has no clip \"" + o.clip +
                      "\" with a straight clamping line; see meshes/clips/README.md");
-  best.leaves_remnant = best.clip.blade < best.needed - past || best.drawn_back > past;
-  if (best.clip.blade < best.needed - past)
+  std::stable_sort(out.begin(), out.end(), [](const ClipPlan& a, const ClipPlan& b) { return a.cost < b.cost; });
+  return out;
+}
+
+std::vector<Note> notes_of(const ClipPlan& plan) {
+  std::vector<Note> notes;
+  if (plan.too_short())
     notes.push_back({Note::Kind::problem,
                      fmt::format("The flattened neck is {:.1f} mm wide; the blades of {} reach over {:.1f} mm of it.",
-                                 best.needed - past, best.clip.name, best.clip.blade),
+                                 plan.needed - past, plan.clip.name, plan.clip.blade),
                      "Expect a remnant, or a second clip; a longer clip can be chosen with --clip."});
-  if (best.drawn_back > past)
+  if (plan.kept_back())
     notes.push_back(
         {Note::Kind::problem,
-         fmt::format("The insula lies {:.1f} mm nearer behind the neck than the blades' tips need.", best.drawn_back),
+         fmt::format("The insula lies {:.1f} mm nearer behind the neck than the blades' tips need.", plan.drawn_back),
          "Expect a remnant behind; turn the vessel (--spin) or the blades (--turn), or choose a shorter clip "
          "(--clip)."});
-  if (best.off_view > 50)
+  if (plan.off_view > 50)
     notes.push_back({Note::Kind::problem,
-                     fmt::format("The applier comes {:.0f} degrees off the line of sight.", best.off_view),
+                     fmt::format("The applier comes {:.0f} degrees off the line of sight.", plan.off_view),
                      "Turn the vessel (--spin), or choose another clip (--clip)."});
-  return best;
+  return notes;
 }
 
 ApplierPose plan_temporary(const artery::Vessel& v, const Solid& floor, const ClipShape& clip) {

@@ -33,20 +33,35 @@ struct NeckSize {
 };
 NeckSize neck_size(const artery::Vessel& vessel, const Vec3& along);
 
+/// Where the blades lie at a neck.
+struct BladePlacement {
+  double lift = 0;        ///< of the blades over the neck's plane, mm
+  double slide = 0;       ///< of the blades' middle beyond the neck's, away from the surgeon, mm
+  double turn = 0;        ///< about the dome's axis from the surgeon's side, degrees
+  bool mirrored = false;  ///< the blade that closes in the direction of +x lies on the other side
+  bool operator==(const BladePlacement&) const = default;
+};
 struct ClipPlan {
   ClipShape clip;
+  BladePlacement at;
   ApplierPose pose;
-  double needed = 0;    ///< length that the flattened neck asks for, mm
-  double off_view = 0;  ///< of the shaft from the line of sight, degrees
-  double lift = 0, slide = 0, turn = 0;
+  double needed = 0;      ///< length that the flattened neck asks for, mm
+  double off_view = 0;    ///< of the shaft from the line of sight, degrees
   double drawn_back = 0;  ///< how far the tips stay short of where they should be, so that they keep off the floor, mm
-  bool leaves_remnant = false;  ///< the blades are too short, or the floor keeps them back; a note says so
+  double cost = 0;        ///< the less, the better it seems to fit
+
+  /// Lays the blades elsewhere at the neck.
+  void lay(const artery::Neck& neck, const BladePlacement& where);
+  bool too_short() const;  ///< the blades do not reach over the flattened neck
+  bool kept_back() const;  ///< the floor keeps the tips from the neck's far side
+  bool leaves_remnant() const { return too_short() || kept_back(); }
 };
-/// A placed vessel's clip: the options' choices, and the best of the rest. The tips keep off `floor` (the insula, which
-/// does not give way: blades that run against it are lifted off the neck). Throws InputError when a wanted clip does
-/// not exist.
-ClipPlan plan_clip(const artery::Vessel& vessel, const Solid& floor, const std::vector<ClipShape>& clips,
-                   const Options& options, std::vector<Note>& notes);
+/// The options' choices for a placed vessel's neck, best first. The tips keep off `floor` (the insula, which does not
+/// give way: blades that run against it are lifted off the neck). Throws InputError when a wanted clip does not exist.
+std::vector<ClipPlan> clip_plans(const artery::Vessel& vessel, const Solid& floor, const std::vector<ClipShape>& clips,
+                                 const Options& options);
+/// What is wrong with a plan.
+std::vector<Note> notes_of(const ClipPlan& plan);
 
 /// A temporary clip across the parent, before the neck; it keeps off the floor too.
 ApplierPose plan_temporary(const artery::Vessel& vessel, const Solid& floor, const ClipShape& clip);

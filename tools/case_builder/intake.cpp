@@ -26,7 +26,6 @@ constexpr std::size_t max_triangles = 2'000'000;   // what is read at all
 constexpr std::size_t many_triangles = 150'000;    // more are made anew from a grid
 constexpr std::uintmax_t max_bytes = 220'000'000;  // of a surface file: beyond that it has more than those triangles
 
-std::string place(const Vec3& p) { return fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z()); }
 const char* ending(int n) { return n == 1 ? "" : "s"; }
 
 TriMesh read_surface_mm(const fs::path& input, const Options& o, std::vector<Note>& notes) {

@@ -62,8 +62,6 @@ Border measured(const TriMesh& m, std::vector<int> loop) {
   return b;
 }
 
-std::string place(const Vec3& p) { return fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z()); }
-
 void fill(artery::Surface& s, const Border& b, int patch) {
   const int hub = int(s.mesh.vertices.size());
   s.mesh.vertices.push_back(b.centre);

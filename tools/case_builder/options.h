@@ -53,7 +53,7 @@ struct Options {
   int difficulty = 0;                       ///< 1 to 5; 0: not said
   std::string clip;                         ///< of meshes/clips; empty: chosen for the neck
   std::optional<double> lift, slide, turn;  ///< of the clip's blades at the neck, mm, mm, degrees; none: chosen
-  bool rehearse = true;                     ///< exercise 2 gets scripted hands, which takes as long as they need
+  bool rehearse = true;                     ///< the exercises are played, to find scripted hands that succeed
 };
 
 Json to_json(const Options& options);

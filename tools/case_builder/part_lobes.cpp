@@ -21,7 +21,6 @@ namespace insula::case_builder {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
-constexpr double wall_half = 0.15;  // mm, of the vessel's wall
 constexpr double margin =
     0.5;  // points so much farther than they must be are conditions too, so that they do not come back
 constexpr double deepest = 6;  // mm

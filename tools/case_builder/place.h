@@ -9,6 +9,8 @@
 
 namespace insula::case_builder {
 
+inline constexpr double wall_half = 0.15;  ///< of the vessel's wall, mm
+
 /// x' = rotation x + shift, mm.
 struct Placement {
   Mat3 rotation = Mat3::Identity();

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double reach = 12;  // mm, around the neck's position: the region in which rotations are tested
 constexpr double limit = 4;   // mm, beyond which distances do not matter
-constexpr double wall_half = 0.15;
 
 Mat3 turn(double angle, const Vec3& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
 

@@ -86,7 +86,7 @@ void script_rupture(const CaseFolder& folder, const artery::Vessel& vessel, cons
     write_text(folder.path / "4_rupture_steady.csv",
                rupture_motion(plan, temporary, temporary_clip, *vessel.neck, height));
   };
-  if (!rehearse || plan.leaves_remnant) return write(heights[0]);
+  if (!rehearse || plan.leaves_remnant()) return write(heights[0]);
   progress.step("rehearsing the rupture");
   double best_height = heights[0], played = 0;
   Outcome best;

@@ -7,8 +7,8 @@
 
 #include "core/base/input_error.h"
 #include "core/model/formats/file_bytes.h"
+#include "tools/case_builder/clipping_rehearsal.h"
 #include "tools/case_builder/dissection_script.h"
-#include "tools/case_builder/motion_script.h"
 #include "tools/case_builder/opening_play.h"
 #include "tools/case_builder/rupture_script.h"
 #include "tools/case_builder/scene_text.h"
@@ -17,14 +17,57 @@
 namespace insula::case_builder {
 namespace {
 
+constexpr const char* temporary_clip = "temporary_straight";
 constexpr const char* names[] = {"1_sylvian_fissure", "2_aneurysm_dissection", "3_clipping", "4_rupture"};
 
-std::string clipping_motion(const ClipPlan& plan) {
-  MotionScript m;
-  m.command(0.1, "applier load " + plan.clip.name);
-  m.place_clip(plan.pose, out_of_field, 2.5);
-  m.key(true, 8, drawn_back(plan.pose, out_of_field));
-  return m.csv();
+/// Clips on the tray of a case: those for the neck first, then one of each kind.
+std::vector<std::string> on_tray(const std::vector<std::string>& first) {
+  std::vector<std::string> out = first;
+  for (const char* menu : {"straight", "curved", "angled", "bayonet", "fenestrated_3_5_stem_90", "mini", temporary_clip,
+                           "temporary_curved"})
+    if (std::find(first.begin(), first.end(), menu) == first.end()) out.push_back(menu);
+  return out;
+}
+
+SceneFacts facts_of(const CaseFolder& folder, const artery::Vessel& v, const Options& o) {
+  SceneFacts f;
+  f.name = folder.name;
+  f.site = o.site, f.difficulty = o.difficulty;
+  f.temporary = temporary_clip;
+  const Json wall = read_json(folder.wall() / "notes.json");
+  for (const Json& w : wall.at("walls")) f.walls.push_back({w.at("regions"), w.at("thickness_mm"), w.at("young_MPa")});
+  for (const artery::NamedCurve& c : v.centrelines) {
+    if (c.name == "sac") continue;
+    f.tethered += (f.tethered.empty() ? "" : " ") + c.region;
+    if (c.to.starts_with("outlet")) f.branches += (f.branches.empty() ? "" : " ") + c.name;
+  }
+  f.neck = v.neck->centre, f.dome = v.centrelines.back().curve.points.back();
+  f.dome_reach = std::max(v.dome_height, v.neck->diameter);
+  f.bleb = v.bleb.has_value();
+  return f;
+}
+
+void write_clipping(const SceneFacts& f, const CaseFolder& folder) {
+  write_text(folder.path / "artery.xml", artery_part(f));
+  write_text(folder.path / "field.xml", field_part(f));
+  write_text(exercise_files(folder)[2], exercise(f, 3));
+}
+
+/// The best of the ranked plans in the running scene. A plan that an author has fixed is played, and left as it is.
+RehearsedClip rehearsed_clip(SceneFacts f, const CaseFolder& folder, const fs::path& project, const artery::Vessel& v,
+                             const std::vector<ClipPlan>& ranked, const Options& o, Progress& progress) {
+  constexpr std::size_t most_plans = 6;
+  progress.step("rehearsing the clipping");
+  const bool fixed = o.lift && o.slide && o.turn;
+  const std::vector<ClipPlan> tried = distinct_plans(ranked, fixed ? 1 : most_plans);
+  std::vector<std::string> names;
+  for (const ClipPlan& p : tried)
+    if (std::find(names.begin(), names.end(), p.clip.name) == names.end()) names.push_back(p.clip.name);
+  f.clips = on_tray(names);
+  f.assets = link_assets(folder, project, f.clips);
+  write_clipping(f, folder);
+  return rehearse_clipping(exercise_files(folder)[2], folder.path / "3_clipping_steady.csv", v, tried, !fixed,
+                           progress);
 }
 
 }  // namespace
@@ -36,38 +79,26 @@ std::vector<fs::path> exercise_files(const CaseFolder& folder) {
 }
 
 void run_scenes(const CaseFolder& folder, const fs::path& project, const Options& o, Progress& progress) {
-  progress.stage("scenes", (o.brain.empty() ? 5 : 6) + 1);
+  progress.stage("scenes", (o.brain.empty() ? 5 : 6) + (o.rehearse ? 2 : 1));
   progress.step("choosing a clip");
   const artery::Vessel v = read_wall(folder.artery());
   if (!v.neck) throw InputError("the vessel has no neck; do the stage wall again");
   std::vector<Note> notes;
   const std::vector<ClipShape> clips = read_clips(project);
   const Solid floor(read_ply(folder.lobes() / "insula_surface.ply"));
-  const ClipPlan plan = plan_clip(v, floor, clips, o, notes);
+  const std::vector<ClipPlan> ranked = clip_plans(v, floor, clips, o);
 
-  SceneFacts f;
-  f.name = folder.name;
-  f.site = o.site, f.difficulty = o.difficulty;
-  f.temporary = "temporary_straight";
-  f.clips = {plan.clip.name};
-  for (const char* menu : {"straight", "curved", "angled", "bayonet", "fenestrated_3_5_stem_90", "mini",
-                           "temporary_straight", "temporary_curved"})
-    if (menu != plan.clip.name) f.clips.push_back(menu);
-  f.assets = link_assets(folder, project, f.clips);
-  const Json wall = read_json(folder.wall() / "notes.json");
-  for (const Json& w : wall.at("walls")) f.walls.push_back({w.at("regions"), w.at("thickness_mm"), w.at("young_MPa")});
-  for (const artery::NamedCurve& c : v.centrelines) {
-    if (c.name == "sac") continue;
-    f.tethered += (f.tethered.empty() ? "" : " ") + c.region;
-    if (c.to.starts_with("outlet")) f.branches += (f.branches.empty() ? "" : " ") + c.name;
-  }
-  f.neck = v.neck->centre, f.dome = v.centrelines.back().curve.points.back();
-  f.dome_reach = std::max(v.dome_height, v.neck->diameter);
-  f.bleb = v.bleb.has_value();
+  SceneFacts f = facts_of(folder, v, o);
+  RehearsedClip clipped{ranked.front(), {}, 0};
+  if (o.rehearse) clipped = rehearsed_clip(f, folder, project, v, ranked, o, progress);
+  const ClipPlan& plan = clipped.plan;
+  const std::vector<Note> wrong = o.rehearse ? notes_of(clipped) : notes_of(plan);
+  notes.insert(notes.end(), wrong.begin(), wrong.end());
 
   progress.step("writing the exercises");
-  write_text(folder.path / "artery.xml", artery_part(f));
-  write_text(folder.path / "field.xml", field_part(f));
+  f.clips = on_tray({plan.clip.name});
+  f.assets = link_assets(folder, project, f.clips);
+  write_clipping(f, folder);
   write_text(folder.path / "1_sylvian_fissure_steady.csv",
              read_file_bytes(project / "scenes/training/1_sylvian_fissure_steady.csv"));
   write_text(folder.path / "3_clipping_steady.csv", clipping_motion(plan));
@@ -85,9 +116,10 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
                   {"blade_mm", rounded(plan.clip.blade)},
                   {"needed_mm", rounded(plan.needed)},
                   {"off_view_deg", rounded(plan.off_view)},
-                  {"lift_mm", rounded(plan.lift)},
-                  {"slide_mm", rounded(plan.slide)},
-                  {"turn_deg", rounded(plan.turn)}};
+                  {"lift_mm", rounded(plan.at.lift)},
+                  {"slide_mm", rounded(plan.at.slide)},
+                  {"turn_deg", rounded(plan.at.turn)}};
+  if (o.rehearse) json["clipping"] = to_json(clipped.outcome);
   json["files_copied"] = f.assets.copied;
   json["notes"] = to_json(notes);
   write_json(folder.path / "scenes.json", json);
