@@ -17,7 +17,10 @@ const sizes = [
   [820, 1180],
   [3840, 2160],
 ];
-/** What no catalogue has: names, units, a month, a word of lists, and what the mock's engine and the stations of a room say. */
+/**
+ * What no catalogue has: names, units, a month, a word of lists, and what the mock's engine and the stations of a
+ * room say.
+ */
 const names = [
   ...['Insula', 'http://192.0.2.3:8080/', 'Table', 'Februar', 'mmHg', 'mL/min', 'min', 'mm'],
   ...['Clipping', 'A strand was torn', 'Hold more gently'],
