@@ -16,6 +16,7 @@ const checks = [
   'sound',
   'replay',
   'start',
+  'tour',
   'room',
   'desk',
   'voice',

@@ -6,9 +6,10 @@ import { spawn } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { launch, patience } from './browser.mjs';
+import { patience } from './browser.mjs';
 import { pause, Person } from './human_hands.mjs';
 import { Practice } from './human_practice.mjs';
+import { launchUndrawn, openUndrawn } from './undrawn.mjs';
 
 const root = fileURLToPath(new URL('../../..', import.meta.url));
 const option = (name, otherwise) => {
@@ -49,24 +50,12 @@ async function end(programsRunning) {
   await Promise.all(gone);
 }
 
-/**
- * Runs in the page. The person reads the panels and never the field, so it is not drawn: here is no graphics card, and
- * one that draws would take none of the processor's time either. Twenty pictures a second suffice for reading.
- */
-function drawNothing() {
-  const draws = ['drawElements', 'drawArrays', 'drawElementsInstanced', 'drawArraysInstanced', 'clear'];
-  for (const name of draws) WebGL2RenderingContext.prototype[name] = () => undefined;
-  const soon = window.requestAnimationFrame.bind(window);
-  window.requestAnimationFrame = (draw) => setTimeout(() => soon(draw), 40);
-}
-
 let passed = 0;
 for (let seed = first; seed < first + seeds; seed++) {
   const running = startSession();
-  const browser = await launch('--disable-gpu-compositing');
+  const browser = await launchUndrawn();
   try {
-    const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
-    await page.addInitScript(drawNothing);
+    const page = await openUndrawn(browser, { width: 1280, height: 800 });
     page.on('framenavigated', (f) => console.log(`   the browser shows ${f.url()}`));
     const url = `http://127.0.0.1:${port + 1}/?quality=draft`;
     for (let k = 0; k < 60 && !(await page.goto(url).catch(() => null)); k++) await pause(500);

@@ -105,6 +105,19 @@ describe('the tour', () => {
     expect(tour.see(again)).toBe(true);
   });
 
+  it('goes on from the new tool when a tool was exchanged before its hand was moved', () => {
+    const tour = new Tour({ getItem: () => '{"offered":true,"done":["zoom","turn"]}', setItem: () => undefined });
+    tour.begin(bundle);
+    tour.enter();
+    tour.see(still());
+    const exchanged = still();
+    Object.assign(exchanged.hands[1]!, { tool: 'scissors', p: new THREE.Vector3(0.02, 0, 0) });
+    expect(tour.see(exchanged), 'the new tool is elsewhere').toBe(false);
+    const moved = structuredCloneOf(exchanged);
+    moved.hands[1]!.p = new THREE.Vector3(0.03, 0, 0);
+    expect(tour.see(moved)).toBe(true);
+  });
+
   it('leaves out what a scene does not have, and survives what a browser may keep', () => {
     const bare = new Tour({ getItem: () => '{"done":[3,"nothing"],"offered":"x"}', setItem: () => undefined });
     bare.begin({ ...bundle, tools: [], commands: [], hands: [] });

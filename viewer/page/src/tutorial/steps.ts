@@ -32,16 +32,22 @@ export interface Step {
   possible(bundle: Bundle): boolean;
   /** start: when the step began. */
   done(start: Seen, now: Seen): boolean;
+  /** What was seen at the start can no longer be compared: the step begins anew. */
+  outdated?(start: Seen, now: Seen): boolean;
 }
 
 const zoomShare = 0.15;
 const turnRad = 0.14;
 const moveM = 0.006;
 
-const moved = (hand: number) => (start: Seen, now: Seen) => {
-  const [a, b] = [start.hands[hand]!, now.hands[hand]!];
-  return a.p !== null && b.p !== null && a.tool === b.tool && a.p.distanceTo(b.p) > moveM;
-};
+/** A hand whose tool was exchanged moves from where the new tool came. */
+const moves = (hand: number): Pick<Step, 'done' | 'outdated'> => ({
+  done: (start, now) => {
+    const [a, b] = [start.hands[hand]!, now.hands[hand]!];
+    return a.p !== null && b.p !== null && a.tool === b.tool && a.p.distanceTo(b.p) > moveM;
+  },
+  outdated: (start, now) => start.hands[hand]!.tool !== now.hands[hand]!.tool,
+});
 const has = (side: string) => (bundle: Bundle) => bundle.hands.some((h) => h.hand === side && h.tools.length > 0);
 
 export const steps: readonly Step[] = [
@@ -65,14 +71,14 @@ export const steps: readonly Step[] = [
     how: () =>
       text('Move your device, or press 2 and drag with the left mouse button. W and S push deeper and draw back.'),
     possible: has('right'),
-    done: moved(1),
+    ...moves(1),
   },
   {
     id: 'left_hand',
     title: () => text('Move the left hand'),
     how: () => text('Move your device, or press 1 for the left hand and drag. Tab changes between the hands.'),
     possible: has('left'),
-    done: moved(0),
+    ...moves(0),
   },
   {
     id: 'button',

@@ -83,7 +83,7 @@ export class Tour {
   see(now: Seen): boolean {
     const { step } = this;
     if (!this.running || !step) return false;
-    this.start ??= now;
+    if (!this.start || step.outdated?.(this.start, now)) this.start = now;
     // A button that was held when the step began must first be let go.
     this.start.hands.forEach((h, k) => (h.button = h.button && now.hands[k]!.button));
     if (!step.done(this.start, now)) return false;
