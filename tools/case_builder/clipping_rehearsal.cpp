@@ -19,7 +19,7 @@ namespace insula::case_builder {
 namespace {
 
 // The search ends after so many plays.
-constexpr int most_plays = 24;
+constexpr int most_plays = 16;
 // A released clip that leaves much of the sac open after this time does not improve any more, s.
 constexpr double hopeless_after_s = 1.5;
 
