@@ -7,7 +7,6 @@ import { check } from './browser.mjs';
 import { launchFirefox } from './firefox.mjs';
 import { liveExercise } from './first_use/live.mjs';
 import { FirstUse, walkToCertificate } from './first_use/walk.mjs';
-import { tapSound } from './sound_tap.mjs';
 
 /** A page that has WebGL 2: Firefox and its screen are here, so it must. */
 async function newPage(browser) {
@@ -27,7 +26,6 @@ try {
   const page = await newPage(browser);
   const errors = [];
   page.on('pageerror', (e) => errors.push(e.message));
-  await page.addInitScript(tapSound);
   await walkToCertificate(page, place, liveExercise);
   assert.deepEqual(errors, []);
 } finally {

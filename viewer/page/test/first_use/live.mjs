@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What somebody sees, hears and moves in a live exercise with a tool in each hand over a tray.
+// What somebody sees and moves in a live exercise with a tool in each hand over a tray.
 import assert from 'node:assert/strict';
 import { check, look, patience, waitFor } from '../browser.mjs';
 
 const field = { x: 293, y: 100, width: 780, height: 470 };
 const middle = [field.x + field.width / 2, field.y + field.height / 2];
-const soundReads = (page, words) =>
-  page.waitForFunction((w) => document.querySelector('.sound button').textContent.includes(w), words, patience);
 
 /** Share of the field's points whose brightness is another one after three more pictures, and what was done before. */
 async function change(page, act = async () => {}) {
@@ -88,17 +86,6 @@ async function hand(page) {
   check(`drag, wheel and key move the hand (${dragged}, ${wheeled}, ${pressed} of the field), and a key gives it back`);
 }
 
-/** Needs tapSound in the page. */
-async function sound(page) {
-  assert.equal(await page.evaluate(() => window.__insula.sound.running), false, 'silent before a gesture');
-  await page.keyboard.press('m');
-  await soundReads(page, 'Sound on');
-  await page.waitForFunction(() => window.__insula.sound.running && window.__tap.blocks.length > 20, null, patience);
-  await page.keyboard.press('m');
-  await soundReads(page, 'Sound off');
-  check('a key starts the sound, the thread of the audio renders it, and the key ends it');
-}
-
 async function reload(page) {
   const { session } = await page.evaluate(() => ({ ...window.__insula }));
   await page.reload();
@@ -114,6 +101,5 @@ export async function liveExercise(page) {
   await picture(page);
   await microscope(page);
   await hand(page);
-  await sound(page);
   await reload(page);
 }
