@@ -120,6 +120,19 @@ std::vector<std::vector<int>> neighbours(const TriMesh& m) {
   return out;
 }
 
+std::vector<std::vector<int>> connected_pieces(const std::vector<std::vector<int>>& next, std::vector<char> marked) {
+  std::vector<std::vector<int>> out;
+  for (std::size_t start = 0; start < marked.size(); ++start) {
+    if (!marked[start]) continue;
+    marked[start] = 0;
+    auto& piece = out.emplace_back(std::vector<int>{int(start)});
+    for (std::size_t i = 0; i < piece.size(); ++i)
+      for (const int n : next[std::size_t(piece[i])])
+        if (marked[std::size_t(n)]) marked[std::size_t(n)] = 0, piece.push_back(n);
+  }
+  return out;
+}
+
 void join_fragments(Vessel& v) {
   const auto next = neighbours(v.wall.mesh);
   for (bool any = true; any;) {

@@ -35,28 +35,20 @@ void join(Graph& g, std::size_t a, std::size_t b, double there, double back) {
 }
 
 /// The largest connected set of vertices farther than `limit` radii from all centrelines.
-std::vector<int> largest_bulge(const std::vector<std::vector<int>>& next, const std::vector<double>& radii,
-                               double limit) {
-  std::vector<int> best;
-  std::vector<char> open(radii.size());
-  for (std::size_t i = 0; i < radii.size(); ++i) open[i] = radii[i] > limit;
-  for (std::size_t start = 0; start < open.size(); ++start) {
-    if (!open[start]) continue;
-    std::vector<int> set{int(start)};
-    open[start] = 0;
-    for (std::size_t i = 0; i < set.size(); ++i)
-      for (const int n : next[std::size_t(set[i])])
-        if (open[std::size_t(n)]) open[std::size_t(n)] = 0, set.push_back(n);
-    if (set.size() > best.size()) best = std::move(set);
-  }
-  return best;
+std::vector<int> largest_bulge(const TriMesh& m, const std::vector<double>& radii, double limit) {
+  std::vector<char> bulges(radii.size());
+  for (std::size_t i = 0; i < radii.size(); ++i) bulges[i] = radii[i] > limit;
+  std::vector<std::vector<int>> pieces = connected_pieces(neighbours(m), std::move(bulges));
+  const auto largest =
+      std::max_element(pieces.begin(), pieces.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  return largest == pieces.end() ? std::vector<int>{} : std::move(*largest);
 }
 
 }  // namespace
 
 std::vector<char> sac_by_cut(const Surface& s, const std::vector<double>& radii, double bulge) {
   const TriMesh& m = s.mesh;
-  const std::vector<int> bulging = largest_bulge(neighbours(m), radii, bulge);
+  const std::vector<int> bulging = largest_bulge(m, radii, bulge);
   if (double(bulging.size()) < min_sac_share * double(m.vertices.size())) return {};
   double most = 0;
   for (const int i : bulging) most = std::max(most, radii[std::size_t(i)]);

@@ -27,18 +27,9 @@ struct Loop {
 /// The vertices beyond a plane, in connected pieces.
 std::vector<std::vector<int>> pieces_beyond(const TriMesh& m, const std::vector<std::vector<int>>& next,
                                             const NeckPlane& plane) {
-  std::vector<char> open(m.vertices.size());
-  for (std::size_t i = 0; i < open.size(); ++i) open[i] = height(m.vertices[i], plane) > 0;
-  std::vector<std::vector<int>> out;
-  for (std::size_t start = 0; start < open.size(); ++start) {
-    if (!open[start]) continue;
-    open[start] = 0;
-    auto& set = out.emplace_back(std::vector<int>{int(start)});
-    for (std::size_t i = 0; i < set.size(); ++i)
-      for (const int n : next[std::size_t(set[i])])
-        if (open[std::size_t(n)]) open[std::size_t(n)] = 0, set.push_back(n);
-  }
-  return out;
+  std::vector<char> beyond(m.vertices.size());
+  for (std::size_t i = 0; i < beyond.size(); ++i) beyond[i] = height(m.vertices[i], plane) > 0;
+  return connected_pieces(next, std::move(beyond));
 }
 
 /// Where edges leave the set through the plane, in order of their angle about the middle: right for a loop that is

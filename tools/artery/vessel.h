@@ -60,6 +60,8 @@ void add_bleb(Vessel& vessel, double radius);
 double section_diameter(const TriMesh& mesh, const Vec3& point, const Vec3& normal, double reach);
 /// Neighbours of each vertex, in a fixed order.
 std::vector<std::vector<int>> neighbours(const TriMesh& mesh);
+/// The marked vertices in connected pieces, by their first vertex. `next`: neighbours().
+std::vector<std::vector<int>> connected_pieces(const std::vector<std::vector<int>>& next, std::vector<char> marked);
 /// Each region but the ends keeps its largest connected piece; smaller ones go to the region they touch most.
 void join_fragments(Vessel& vessel);
 /// Fills the dimensions that every vessel has.

@@ -10,10 +10,11 @@
 
 #include "core/base/input_error.h"
 #include "core/mechanics/shell_body.h"
-#include "core/registry/registry.h"
 #include "engine/live/headless.h"
 #include "tools/case_builder/motion_script.h"
 #include "tools/case_builder/neck_frame.h"
+#include "tools/case_builder/rehearsal.h"
+#include "tools/case_builder/standing.h"
 
 namespace insula::case_builder {
 namespace {
@@ -33,23 +34,15 @@ const ShellBody& vessel_of(const Simulation& simulation) {
 /// The exercise, played again and again from its start.
 class ClippingTrial {
  public:
-  explicit ClippingTrial(const fs::path& scene) {
-    register_builtin(registry_);
-    auto loaded = load_simulation(scene, registry_, 1);
-    if (!loaded.simulation) throw InputError("exercise 3 does not load:\n" + loaded.diagnostics.format());
-    simulation_ = std::move(loaded.simulation);
-  }
+  explicit ClippingTrial(const fs::path& scene) : scene_(scene, "exercise 3") {}
 
   /// The neck under pressure, between the lobes.
   artery::Neck neck(const artery::Vessel& at_rest) const {
-    const ShellBody& wall = vessel_of(*simulation_);
-    std::vector<Vec3> vertices;
-    for (int i = 0; i < wall.nodes(); ++i) vertices.push_back(1000 * wall.q().segment<3>(3 * i));
-    return deformed_neck(at_rest, vertices);
+    return deformed_neck(at_rest, nodes_mm(vessel_of(scene_.simulation())));
   }
 
   ClippingOutcome play(const ClipPlan& plan) {
-    Simulation& s = *simulation_;
+    Simulation& s = scene_.simulation();
     s.reset();
     const Motion motion = parse_motion(clipping_motion(plan), "rehearsal");
     HeadlessRun run(s, motion);
@@ -71,9 +64,9 @@ class ClippingTrial {
 
   ClippingOutcome now() const {
     ClippingOutcome out;
-    const ExerciseLog& log = simulation_->exercise()->log();
-    out.goal = log.state() == ExerciseState::done && simulation_->report().finite;
-    const auto tell = [&out](const std::string& what) { out.told += (out.told.empty() ? "" : ", ") + what; };
+    const Simulation& s = scene_.simulation();
+    const ExerciseLog& log = s.exercise()->log();
+    out.goal = log.state() == ExerciseState::done && s.report().finite;
     for (const MeasureState& m : log.measures()) {
       if (!m.known) continue;
       const std::string_view id = m.id;
@@ -83,19 +76,18 @@ class ClippingTrial {
       else if (id == "slit") out.slit = m.value;
       else if (id.ends_with(".flow_pct"))
         out.flows.emplace_back(id.substr(0, id.size() - std::string_view(".flow_pct").size()), 0.01 * m.value);
-      if (m.good < 0) tell(fmt::format("{} is {:.0f} {}", m.text, m.value, m.unit));
+      if (m.good < 0) tell(out.told, in_words(m));
     }
     for (const FaultState& f : log.faults()) {
       if (f.count == 0) continue;
       out.faults += f.count;
       out.ruptured = out.ruptured || f.id == "rupture";
-      tell(fmt::format("{} x \"{}\"", f.count, f.text));
+      tell(out.told, in_words(f));
     }
     return out;
   }
 
-  Registry registry_;
-  std::unique_ptr<Simulation> simulation_;
+  LoadedScene scene_;
 };
 
 /// What a surgeon would try next, the most promising first.

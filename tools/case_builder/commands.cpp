@@ -180,8 +180,7 @@ void scene_options(CLI::App* app, Options& o) {
                    {.bare = "mm", .min = "-15 mm", .max = "15 mm", .doc = "of the blades' middle beyond the neck's"});
   app->add_flag("--rehearse,!--no-rehearse", o.rehearse,
                 "play the exercises until scripted hands succeed (default); else exercise 2 has none, and the clip "
-                "lies where its "
-                "geometry says, which is quicker");
+                "lies where its geometry says, which is quicker");
   quantity<Angle>(app, "--turn", [&o](double degrees) { o.turn = degrees; },
                   {.bare = "deg",
                    .min = "-180 deg",

@@ -17,7 +17,7 @@ std::string complaint(const fs::path& scene, Progress& progress) {
   if (s.exercise()->log().state() != ExerciseState::done)
     out = fmt::format("{:.0f} of {:.0f} strands stand at the end", channel_sum(s, "standing"), channel_sum(s, "total"));
   for (const FaultState& f : s.exercise()->log().faults())
-    if (f.count > 0) out += fmt::format("{}{} x \"{}\"", out.empty() ? "" : ", ", f.count, f.text);
+    if (f.count > 0) tell(out, in_words(f));
   return out;
 }
 

@@ -58,19 +58,18 @@ Outcome outcome(const fs::path& scene, double share_from, Progress& progress) {
                          [&](double done) { progress.share(share_from + done / double(std::size(heights))); });
   Outcome out;
   bool narrowed_only = true;
-  const auto tell = [&](int weight, const std::string& what) {
+  const auto count = [&](int weight, const std::string& what) {
     out.flaws += weight;
-    out.told += (out.told.empty() ? "" : ", ") + what;
+    tell(out.told, what);
   };
   const ExerciseLog& log = played.simulation().exercise()->log();
   for (const GoalState& g : log.goals())
-    if (g.required && !g.done) tell(10, fmt::format("\"{}\" is not reached", g.text)), narrowed_only = false;
+    if (g.required && !g.done) count(10, fmt::format("\"{}\" is not reached", g.text)), narrowed_only = false;
   for (const FaultState& f : log.faults())
-    if (f.count > 0 && !f.id.ends_with("_force"))
-      tell(10, fmt::format("{} x \"{}\"", f.count, f.text)), narrowed_only = false;
+    if (f.count > 0 && !f.id.ends_with("_force")) count(10, in_words(f)), narrowed_only = false;
   for (const MeasureState& m : log.measures())
     if (m.known && m.good < 0) {
-      tell(1, fmt::format("{} is {:.0f} {}", m.text, m.value, m.unit));
+      count(1, in_words(m));
       narrowed_only = narrowed_only && m.id.ends_with(".stenosis_pct");
     }
   out.sound = narrowed_only;

@@ -70,13 +70,7 @@ bool crossed(const Vec3& a, const Vec3& b, const TriMesh& mesh) {
 /// Share of the sac's side towards the eye that is not hidden.
 double seen_of(const ShellBody& artery, const Vec3& eye, const std::vector<TriMesh>& others) {
   constexpr double off = 0.05;  // mm, so that a triangle does not hide itself
-  const TriMesh wall = in_mm(
-      [&] {
-        std::vector<Vec3> x;
-        for (int i = 0; i < artery.nodes(); ++i) x.push_back(artery.q().segment<3>(3 * i));
-        return x;
-      }(),
-      artery.model().wall.triangles);
+  const TriMesh wall{nodes_mm(artery), artery.model().wall.triangles};
   const int sac = artery.region("sac"), bleb = artery.region("bleb");
   double facing = 0, free = 0;
   for (const auto& t : wall.triangles) {
@@ -100,6 +94,12 @@ double seen_of(const ShellBody& artery, const Vec3& eye, const std::vector<TriMe
 }
 
 }  // namespace
+
+std::vector<Vec3> nodes_mm(const DeformableBody& body) {
+  std::vector<Vec3> out;
+  for (int i = 0; i < body.nodes(); ++i) out.push_back(1000 * body.q().segment<3>(3 * i));
+  return out;
+}
 
 Standing standing_of(const Simulation& s) {
   Standing out;

@@ -3,6 +3,7 @@
 // start in the free. Lobes of an author's own may leave the arms in tissue or in the air, and the aneurysm covered;
 // this finds out in the settled scene itself.
 #pragma once
+#include "core/mechanics/deformable_body.h"
 #include "core/sim/simulation.h"
 #include "tools/case_builder/case_folder.h"
 
@@ -26,6 +27,8 @@ struct Standing {
   bool has_sac = false;
   std::vector<std::string> in_tissue;  ///< hands' tools that start within a lobe, the floor or the bone
 };
+/// Present places of a body's nodes, mm.
+std::vector<Vec3> nodes_mm(const DeformableBody& body);
 /// Of a scene that has been stepped at least once. Millimetres and newtons.
 Standing standing_of(const Simulation& simulation);
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The browser of the end-to-end tests: headless Chromium with software rendering, or with INSULA_BROWSER=firefox
 // Firefox. Exit status 77: none here, skipped.
+import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 import { launchFirefox } from './firefox.mjs';
-
-export { waitFor } from './patience.mjs';
 
 /** Software rendering is slow; INSULA_PATIENCE_MS is for those who wait for a failing test. */
 export const patience = { timeout: Number(process.env.INSULA_PATIENCE_MS ?? 300_000), polling: 250 };
@@ -35,6 +34,14 @@ export function launch(...more) {
 export const click = (page, selector) => page.evaluate((s) => document.querySelector(s).click(), selector);
 
 export const check = (text) => console.log(`ok  ${text}`);
+
+export async function waitFor(what, test) {
+  for (let k = 0; k < 400; k++) {
+    if (await test()) return;
+    await new Promise((r) => setTimeout(r, 100));
+  }
+  assert.fail(`no ${what} within 40 s`);
+}
 
 /**
  * Mean brightness, its deviation, and shares of reddish, greenish and dark red pixels of the picture, without the

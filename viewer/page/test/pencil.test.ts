@@ -68,10 +68,15 @@ describe('the pointer', () => {
 });
 
 describe('a stroke', () => {
+  async function drawing() {
+    const all = desk();
+    all.pencil.set('draw');
+    await all.answer(-1); // of the middle, which is asked for at first
+    return all;
+  }
+
   it('lies at the depth under its beginning', async () => {
-    const { pencil, pen, sent, answer } = desk();
-    pencil.set('draw');
-    await answer(-1); // of the middle, which is asked for at first
+    const { pen, sent, answer } = await drawing();
     pen('pointerdown', 50, 50);
     pen('pointerrawupdate', 150, 50);
     pen('pointerup', 150, 50);
@@ -89,9 +94,7 @@ describe('a stroke', () => {
   });
 
   it('does not wait long for its depth', async () => {
-    const { pencil, pen, sent, answer } = desk();
-    pencil.set('draw');
-    await answer(-1); // of the middle, which is asked for at first
+    const { pen, sent, answer } = await drawing();
     pen('pointerdown', 50, 50);
     await pass(depthWaitMs);
     expect(sent).toMatchObject([{ kind: 'stroke', points: [[-1, 0, -1]] }]);
@@ -103,9 +106,7 @@ describe('a stroke', () => {
   });
 
   it('keeps its own depth when the next one begins early', async () => {
-    const { pencil, pen, sent, answer } = desk();
-    pencil.set('draw');
-    await answer(-1); // of the middle, which is asked for at first
+    const { pen, sent, answer } = await drawing();
     pen('pointerdown', 50, 50);
     pen('pointerup', 50, 50);
     pen('pointerdown', 150, 50);
