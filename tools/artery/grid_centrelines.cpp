@@ -19,6 +19,7 @@ namespace {
 constexpr int cells_across[] = {90, 160,
                                 280};  // along the longest side; more where a thin vessel falls between the nodes
 constexpr double max_cells = 1.2e7;
+constexpr double most_depth = 1.2;  // of the widest cap's radius: a deeper place is no better, or paths run into a sac
 
 struct InnerGrid {
   Vec3 low;
@@ -90,8 +91,10 @@ Paths find_paths(const Surface& surface, const WallPoints& wall, int across_long
   const InnerGrid& grid = out.grid;
   const std::size_t cells = grid.inside.size();
   std::vector<double> depth(cells, 0.0);
+  double deepest = 0;
+  for (const CapPlane& cap : surface.caps) deepest = std::max(deepest, most_depth * cap.radius);
   for (std::size_t v = 0; v < cells; ++v)
-    if (grid.inside[v]) depth[v] = wall.distance(grid.point(int(v)));
+    if (grid.inside[v]) depth[v] = std::min(wall.distance(grid.point(int(v))), deepest);
   const auto cell_at = [&](const CapPlane& cap) {
     const Vec3 want = cap.centre - 1.5 * grid.step * cap.normal;
     int best = -1;

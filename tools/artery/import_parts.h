@@ -38,6 +38,8 @@ inline constexpr double of_a_vessel = 1.15;
 /// radii: of each vertex, its distance from the nearest centreline, in radii of that vessel.
 /// bulge: where a bulge begins, in the same unit.
 std::vector<char> sac_by_cut(const Surface& surface, const std::vector<double>& radii, double bulge);
+/// The largest connected set of vertices farther than `limit` radii from all centrelines.
+std::vector<int> largest_bulge(const TriMesh& mesh, const std::vector<double>& radii, double limit);
 /// The given vertices become the sac. The plane through their border is the neck.
 void find_sac(Vessel& vessel, const std::vector<char>& of_sac);
 /// What lies beyond a plane becomes the sac, what lies near it the neck. `vessel` has no sac yet. Throws
@@ -46,5 +48,9 @@ void sac_beyond(Vessel& vessel, const NeckPlane& plane);
 /// The plane near that of the vessel's neck whose section is narrowest, not far up the dome, with no wall of a vessel
 /// on its dome side. radii: as above.
 NeckPlane narrowest_neck(const Vessel& vessel, const std::vector<double>& radii);
+/// Necks by three methods, the best first: the narrowest section near the shortest line, the plane of that line
+/// (sac_by_cut), and the border of what lies outside of the vessels' tubes (Piccinelli et al. 2012). Empty when nothing
+/// bulges. `vessel` has no sac yet. Throws std::runtime_error when something bulges that no plane parts.
+std::vector<NeckProposal> propose_necks(const Vessel& vessel, const std::vector<double>& radii);
 
 }  // namespace insula::artery

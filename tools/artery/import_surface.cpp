@@ -9,9 +9,6 @@
 namespace insula::artery {
 namespace {
 
-// Times the vessel's radius from its centreline: no vessel any more. A flat sac has the lower ones only.
-constexpr double bulges[] = {1.45, 1.35, 1.27};
-
 Vec3 nearest_on_segments(const std::vector<std::array<Vec3, 2>>& segments, const Vec3& p) {
   Vec3 best = p;
   double least = 1e300;
@@ -65,17 +62,6 @@ std::vector<double> name_vessels(Vessel& v) {
   return out;
 }
 
-void propose_sac(Vessel& v, const std::vector<double>& radii, bool narrow_neck) {
-  for (const double bulge : bulges) {
-    Vessel proposal = v;
-    find_sac(proposal, sac_by_cut(v.wall, radii, bulge));
-    if (!proposal.neck) continue;
-    if (narrow_neck) sac_beyond(v, narrowest_neck(proposal, radii));
-    else v = std::move(proposal);
-    return;
-  }
-}
-
 }  // namespace
 
 Vessel import_surface(const TriMesh& mesh, const ImportOptions& options) {
@@ -118,7 +104,7 @@ Vessel vessel_of(Surface original, const ImportOptions& options) {
   v.centrelines = grid_centrelines(v.wall, WallPoints(v.wall));
   const std::vector<double> radii = name_vessels(v);
   if (options.neck) sac_beyond(v, *options.neck);
-  else propose_sac(v, radii, options.narrow_neck);
+  else if (v.proposals = propose_necks(v, radii); !v.proposals.empty()) sac_beyond(v, v.proposals.front().plane);
   const std::vector<VertexKind> kinds = vertex_kinds(v.wall);
   v.regions.push_back("ends");
   for (std::size_t i = 0; i < kinds.size(); ++i)

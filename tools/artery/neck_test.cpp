@@ -36,9 +36,7 @@ TEST_P(ProposedNeck, IsTheNarrowestSectionBelowTheDomeWithoutABranch) {
   const auto [name, turns] = GetParam();
   const Mat3 rotation = Eigen::AngleAxisd(0.9 * turns, Vec3(0.3, 0.5, 0.8).normalized()).toRotationMatrix();
   const Known truth = known(name, rotation);
-  ImportOptions options;
-  options.narrow_neck = true;
-  const Vessel v = import_surface(truth.surface, options);
+  const Vessel v = import_surface(truth.surface, {});
   ASSERT_TRUE(v.neck);
   const double angle = std::acos(std::min(1.0, v.neck->normal.dot(truth.neck.normal))) * 180 / std::numbers::pi;
   const Vec3 apart = v.neck->centre - truth.neck.centre;

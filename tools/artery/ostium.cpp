@@ -34,7 +34,8 @@ void join(Graph& g, std::size_t a, std::size_t b, double there, double back) {
   put(boost::edge_reverse, g, e, r), put(boost::edge_reverse, g, r, e);
 }
 
-/// The largest connected set of vertices farther than `limit` radii from all centrelines.
+}  // namespace
+
 std::vector<int> largest_bulge(const TriMesh& m, const std::vector<double>& radii, double limit) {
   std::vector<char> bulges(radii.size());
   for (std::size_t i = 0; i < radii.size(); ++i) bulges[i] = radii[i] > limit;
@@ -43,8 +44,6 @@ std::vector<int> largest_bulge(const TriMesh& m, const std::vector<double>& radi
       std::max_element(pieces.begin(), pieces.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
   return largest == pieces.end() ? std::vector<int>{} : std::move(*largest);
 }
-
-}  // namespace
 
 std::vector<char> sac_by_cut(const Surface& s, const std::vector<double>& radii, double bulge) {
   const TriMesh& m = s.mesh;

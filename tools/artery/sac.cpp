@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which part of a real vessel is the sac: what bulges out of all centrelines, or what lies beyond a plane.
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -123,14 +122,15 @@ void find_sac(Vessel& v, const std::vector<char>& of_sac) {
     if (std::any_of(next[std::size_t(i)].begin(), next[std::size_t(i)].end(),
                     [&](int n) { return v.region[std::size_t(n)] < neck_region; }))
       rim.push_back(i);
-  Vec3 centre = Vec3::Zero(), middle = Vec3::Zero();
+  Vec3 centre = Vec3::Zero(), normal = Vec3::Zero();
   for (const int i : rim) centre += m.vertices[std::size_t(i)] / double(rim.size());
-  for (const int i : sac) middle += m.vertices[std::size_t(i)] / double(sac.size());
-  Mat3 spread = Mat3::Zero();
-  for (const int i : rim)
-    spread += (m.vertices[std::size_t(i)] - centre) * (m.vertices[std::size_t(i)] - centre).transpose();
-  Vec3 normal = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().col(0);
-  if (normal.dot(middle - centre) < 0) normal = -normal;
+  // The rim may dip over a branch. The area that it encloses as a vector is that of the sac's triangles together.
+  for (const auto& t : m.triangles)
+    if (std::all_of(t.begin(), t.end(), [&](int i) { return of_sac[std::size_t(i)] != 0; }))
+      normal += 0.5 * (m.vertices[std::size_t(t[1])] - m.vertices[std::size_t(t[0])])
+                          .cross(m.vertices[std::size_t(t[2])] - m.vertices[std::size_t(t[0])]);
+  if (rim.empty() || normal.norm() < 1e-9) return;
+  normal.normalize();
   for (const int i : rim) v.region[std::size_t(i)] = neck_region;
   const double diameter = section_diameter(m, centre, normal, 1e300);
   double mean = 0;
@@ -193,36 +193,47 @@ NeckPlane narrowest_neck(const Vessel& v, const std::vector<double>& radii) {
   };
   struct State {
     double up, tilt_a, tilt_b;
-  } best{0, 0, 0};
+    double cost = 1e300;
+  };
   const Vec3 u = first.normal.unitOrthogonal(), w = first.normal.cross(u);
   const auto plane_of = [&](const State& s) {
     const Vec3 n = (first.normal + std::tan(s.tilt_a) * u + std::tan(s.tilt_b) * w).normalized();
     return NeckPlane{first.centre + s.up * first.normal, n};
   };
-  double least = 1e300;
-  for (double up = -0.15; up < 0.5; up += 0.05)  // the plane of what bulges may still touch a branch
+  const auto judged = [&](State s) {
+    s.cost = cost(plane_of(s), s.up);
+    return s;
+  };
+  std::vector<State> starts;
+  for (double up = -0.15; up < 0.5; up += 0.05) {  // the plane of what bulges may still touch a branch
+    State best;
     for (double a = -0.4; a < 0.5; a += 0.2)
       for (double b = -0.4; b < 0.5; b += 0.2)
-        if (const double c = cost(plane_of({up * top, a, b}), up * top); c < least) least = c, best = {up * top, a, b};
-  if (least > 1e299)
+        if (const State s = judged({up * top, a, b}); s.cost < best.cost) best = s;
+    if (best.cost < 1e299) starts.push_back(best);
+  }
+  if (starts.empty())
     throw std::runtime_error(
         "no plane near the border of what bulges parts a dome from the vessel; give the neck's plane");
-  for (const double step : {1.0, 0.5, 0.25})  // pattern search
-    for (bool moved = true; moved;) {
-      moved = false;
-      for (const State d : {State{0.1 * top * step, 0, 0},
-                            {-0.1 * top * step, 0, 0},
-                            {0, 0.12 * step, 0},
-                            {0, -0.12 * step, 0},
-                            {0, 0, 0.12 * step},
-                            {0, 0, -0.12 * step}}) {
-        const State s{best.up + d.up, best.tilt_a + d.tilt_a, best.tilt_b + d.tilt_b};
-        if (s.up < -0.15 * top || s.up > 0.45 * top || std::hypot(s.tilt_a, s.tilt_b) > 0.6) continue;
-        const double c = cost(plane_of(s), s.up);
-        if (c < least) least = c, best = s, moved = true;
+  const auto cheaper = [](const State& x, const State& y) { return x.cost < y.cost; };
+  std::sort(starts.begin(), starts.end(), cheaper);
+  starts.resize(std::min<std::size_t>(starts.size(), 4));
+  for (State& best : starts)
+    for (const double step : {1.0, 0.5, 0.25})  // pattern search
+      for (bool moved = true; moved;) {
+        moved = false;
+        for (const State d : {State{0.1 * top * step, 0, 0},
+                              {-0.1 * top * step, 0, 0},
+                              {0, 0.12 * step, 0},
+                              {0, -0.12 * step, 0},
+                              {0, 0, 0.12 * step},
+                              {0, 0, -0.12 * step}}) {
+          const State s{best.up + d.up, best.tilt_a + d.tilt_a, best.tilt_b + d.tilt_b};
+          if (s.up < -0.15 * top || s.up > 0.45 * top || std::hypot(s.tilt_a, s.tilt_b) > 0.6) continue;
+          if (const State to = judged(s); cheaper(to, best)) best = to, moved = true;
+        }
       }
-    }
-  return plane_of(best);
+  return plane_of(*std::min_element(starts.begin(), starts.end(), cheaper));
 }
 
 void add_bleb(Vessel& v, double radius) {

@@ -22,6 +22,19 @@ struct Neck {
   double diameter = 0;
 };
 
+struct NeckPlane {
+  Vec3 centre, normal;  ///< mm; unit, towards the dome
+};
+
+/// Where a neck may be, and how it was found.
+struct NeckProposal {
+  std::string method;
+  NeckPlane plane;
+  double diameter = 0;   ///< mm, of the circle of equal area
+  double agreement = 1;  ///< of its dome with the chosen one: Dice coefficient of their areas, 0 to 1
+  bool planar = true;    ///< its plane alone parts a dome, so that it may be given as the neck
+};
+
 struct Vessel {
   Surface wall;
   TriMesh picture;
@@ -29,6 +42,7 @@ struct Vessel {
   std::vector<int> region;  ///< a wall vertex's
   std::vector<NamedCurve> centrelines;
   std::optional<Neck> neck;
+  std::vector<NeckProposal> proposals;  ///< the first is the neck; none where it was given
   double dome_height = 0;
   std::optional<std::pair<Vec3, double>> bleb;  ///< centre, radius
   std::map<std::string, double> dimensions;     ///< measured on the made mesh, mm and degrees
@@ -37,20 +51,18 @@ struct Vessel {
 /// The vessel of a table's entry. Throws std::runtime_error when its dimensions make no sound surface.
 Vessel make_case(const CaseSpec& spec);
 
-struct NeckPlane {
-  Vec3 centre, normal;  ///< mm; unit, towards the dome
-};
 struct ImportOptions {
   double edge_length = 0;  ///< mm; 0: chosen for about so many vertices:
   double vertices = 1700;
   std::optional<NeckPlane> neck;       ///< in place of the one that is found
-  bool narrow_neck = false;            ///< the plane that is found is moved and turned to the narrowest section near it
   Vec3 inlet = Vec3::Constant(1e300);  ///< the cap nearest to this point; by default the widest
 };
 /// The vessel of a closed surface whose openings are flat caps.
 Vessel import_surface(const TriMesh& surface, const ImportOptions& options);
 /// The same where the caps are known: a closed surface whose triangles are marked, two caps or more.
 Vessel vessel_of(Surface surface, const ImportOptions& options);
+/// How sure a found neck is, 0 to 1: the mean agreement of the other proposals. 1 where the neck was given.
+double neck_confidence(const std::vector<NeckProposal>& proposals);
 /// The weak tip of the sac: vertices within `radius` mm of the dome become the region "bleb". Does nothing without a
 /// sac.
 void add_bleb(Vessel& vessel, double radius);

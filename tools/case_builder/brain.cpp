@@ -57,9 +57,9 @@ std::vector<mesh_tool::TetMesh> lobes_of(const mesh_tool::PartFields& fields, do
          ""});
   if (nodes_of(meshes) > std::size_t(most))
     notes.push_back(
-        {Note::Kind::problem,
-         fmt::format("The lobes have {} nodes, more than the {} that were allowed.", nodes_of(meshes), most),
-         "Give a smoother surface or segmentation, or allow more with --brain-nodes."});
+        problem("lobes_too_fine",
+                fmt::format("The lobes have {} nodes, more than the {} that were allowed.", nodes_of(meshes), most),
+                "Give a smoother surface or segmentation, or allow more with --brain-nodes."));
   return meshes;
 }
 
@@ -103,12 +103,13 @@ Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const fs:
     shift = (next.apply(fissure_centre) - fissure_centre).norm(),
     turn = Eigen::AngleAxisd(next.rotation).angle() * 180 / std::numbers::pi;
     if (shift > farthest_move || turn > widest_turn) {
-      notes.push_back({Note::Kind::problem,
-                       fmt::format("The fissure lies {:.1f} mm from where the arms, the hands and the microscope "
-                                   "stand; it would have to be moved by {:.0f} mm and turned by {:.0f} degrees.",
-                                   off, shift, turn),
-                       "Bring the brain to the MNI frame (right-anterior-superior) by a registration of its own, best "
-                       "one that follows the gyri."});
+      notes.push_back(
+          problem("fissure_elsewhere",
+                  fmt::format("The fissure lies {:.1f} mm from where the arms, the hands and the microscope "
+                              "stand; it would have to be moved by {:.0f} mm and turned by {:.0f} degrees.",
+                              off, shift, turn),
+                  "Bring the brain to the MNI frame (right-anterior-superior) by a registration of its own, best "
+                  "one that follows the gyri."));
       return whole;
     }
     move(brain.volume, step);

@@ -8,8 +8,8 @@
 #include "tools/case_builder/brain_for_test.h"
 #include "tools/case_builder/commands.h"
 #include "tools/case_builder/fissure_fit.h"
+#include "tools/case_builder/measured_scene.h"
 #include "tools/case_builder/project.h"
-#include "tools/case_builder/report.h"
 #include "tools/case_builder/scenes.h"
 
 namespace insula::case_builder {

@@ -12,6 +12,10 @@
 
 namespace insula::case_builder {
 
+Note problem(std::string id, std::string text, std::string advice) {
+  return {Note::Kind::problem, std::move(text), std::move(advice), std::move(id)};
+}
+
 Json to_json(const std::vector<Note>& notes) {
   Json out = Json::array();
   for (const Note& n : notes) {
@@ -19,6 +23,7 @@ Json to_json(const std::vector<Note>& notes) {
     one["kind"] = n.kind == Note::Kind::fact ? "fact" : n.kind == Note::Kind::repair ? "repair" : "problem";
     one["text"] = n.text;
     if (!n.advice.empty()) one["advice"] = n.advice;
+    if (!n.id.empty()) one["id"] = n.id;
     out.push_back(one);
   }
   return out;
@@ -31,7 +36,7 @@ std::vector<Note> notes_from_json(const Json& json) {
     out.push_back({kind == "fact"     ? Note::Kind::fact
                    : kind == "repair" ? Note::Kind::repair
                                       : Note::Kind::problem,
-                   one.value("text", ""), one.value("advice", "")});
+                   one.value("text", ""), one.value("advice", ""), one.value("id", "")});
   }
   return out;
 }

@@ -12,12 +12,15 @@ namespace insula::case_builder {
 
 namespace fs = std::filesystem;
 
-/// A finding during the work. A repair says what was changed; a problem says what to do.
+/// A finding during the work. A repair says what was changed; a problem says what to do, and has a name that stays the
+/// same whatever the numbers in its text.
 struct Note {
   enum class Kind { fact, repair, problem };
   Kind kind = Kind::fact;
   std::string text, advice;
+  std::string id = {};
 };
+Note problem(std::string id, std::string text, std::string advice);
 Json to_json(const std::vector<Note>& notes);
 std::vector<Note> notes_from_json(const Json& json);
 

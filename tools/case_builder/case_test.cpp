@@ -13,6 +13,7 @@
 #include "engine/live/headless.h"
 #include "tools/case_builder/commands.h"
 #include "tools/case_builder/intake.h"
+#include "tools/case_builder/measured_scene.h"
 #include "tools/case_builder/report.h"
 #include "tools/case_builder/scenes.h"
 #include "tools/case_builder/shapes_for_test.h"
@@ -37,8 +38,7 @@ int command(const std::vector<std::string>& words, std::string* said = nullptr) 
 std::map<std::string, std::string> files_of(const fs::path& folder) {
   std::map<std::string, std::string> out;
   for (const auto& f : fs::recursive_directory_iterator(folder))
-    if (f.is_regular_file() && f.path().filename() != "report.html" &&
-        f.path().string().find("/meshes/") == std::string::npos)
+    if (f.is_regular_file() && f.path().stem() != "report" && f.path().string().find("/meshes/") == std::string::npos)
       out[f.path().lexically_relative(folder).string()] = read_file_bytes(f.path());
   return out;
 }
@@ -183,6 +183,13 @@ TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
   for (const char* part : {"<svg", "worst angle", "dome to neck", "room to the frontal", "closed by flat caps",
                            "a step takes", "3_clipping.xml"})
     EXPECT_NE(report.find(part), std::string::npos) << part;
+
+  const Json numbers = read_json(made.path / "report.json");
+  EXPECT_NEAR(numbers.at("neck").at("diameter_mm").get<double>(), read_wall(made.artery()).neck->diameter, 1e-3);
+  EXPECT_GT(numbers.at("neck").at("confidence").get<double>(), 0.8);
+  for (const char* lobe : {"frontal", "temporal", "insula"}) EXPECT_EQ(numbers.at("overlap_mm").at(lobe), 0) << lobe;
+  EXPECT_GE(numbers.at("step_ms").at("p95").get<double>(), numbers.at("step_ms").at("p50").get<double>());
+  EXPECT_EQ(numbers.at("clipping"), read_json(made.path / "scenes.json").at("clipping"));
 
   // A stage again with nothing new changes nothing; with a neck of one's own it moves the neck there and keeps the
   // other choices.

@@ -138,20 +138,21 @@ std::vector<ClipPlan> clip_plans(const artery::Vessel& v, const Solid& floor, co
 std::vector<Note> notes_of(const ClipPlan& plan) {
   std::vector<Note> notes;
   if (plan.too_short())
-    notes.push_back({Note::Kind::problem,
-                     fmt::format("The flattened neck is {:.1f} mm wide; the blades of {} reach over {:.1f} mm of it.",
-                                 plan.needed - past, plan.clip.name, plan.clip.blade),
-                     "Expect a remnant, or a second clip; a longer clip can be chosen with --clip."});
-  if (plan.kept_back())
     notes.push_back(
-        {Note::Kind::problem,
-         fmt::format("The insula lies {:.1f} mm nearer behind the neck than the blades' tips need.", plan.drawn_back),
-         "Expect a remnant behind; turn the vessel (--spin) or the blades (--turn), or choose a shorter clip "
-         "(--clip)."});
+        problem("clip_too_short",
+                fmt::format("The flattened neck is {:.1f} mm wide; the blades of {} reach over {:.1f} mm of it.",
+                            plan.needed - past, plan.clip.name, plan.clip.blade),
+                "Expect a remnant, or a second clip; a longer clip can be chosen with --clip."));
+  if (plan.kept_back())
+    notes.push_back(problem(
+        "insula_behind_neck",
+        fmt::format("The insula lies {:.1f} mm nearer behind the neck than the blades' tips need.", plan.drawn_back),
+        "Expect a remnant behind; turn the vessel (--spin) or the blades (--turn), or choose a shorter clip "
+        "(--clip)."));
   if (plan.off_view > 50)
-    notes.push_back({Note::Kind::problem,
-                     fmt::format("The applier comes {:.0f} degrees off the line of sight.", plan.off_view),
-                     "Turn the vessel (--spin), or choose another clip (--clip)."});
+    notes.push_back(problem("applier_off_view",
+                            fmt::format("The applier comes {:.0f} degrees off the line of sight.", plan.off_view),
+                            "Turn the vessel (--spin), or choose another clip (--clip)."));
   return notes;
 }
 

@@ -215,10 +215,11 @@ std::vector<Note> notes_of(const RehearsedClip& clipped) {
                                o.grade, 100 * o.remnant, 100 * o.least_flow(), clipped.plays),
                    ""});
   else
-    out.push_back({Note::Kind::problem,
-                   fmt::format("The best of {} played placements of the clip leaves something to be desired: {}.",
-                               clipped.plays, o.told.empty() ? "the goal is not reached" : o.told),
-                   "Expect a remnant, or a second clip. Try another clip (--clip), or turn the vessel (--spin)."});
+    out.push_back(
+        problem("clipping_unsolved",
+                fmt::format("The best of {} played placements of the clip leaves something to be desired: {}.",
+                            clipped.plays, o.told.empty() ? "the goal is not reached" : o.told),
+                "Expect a remnant, or a second clip. Try another clip (--clip), or turn the vessel (--spin)."));
   for (const Note& n : notes_of(clipped.plan)) out.push_back(o.sound() ? Note{Note::Kind::fact, n.text, ""} : n);
   return out;
 }

@@ -39,8 +39,8 @@ bool leave_out(SceneFacts& f, const std::string& text, std::vector<Note>& notes)
     before.resize(before.find("id=\"to_" + f.strand_sets[i]));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     if (text.find(fmt::format("2_aneurysm_dissection.xml:{}:", line)) == std::string::npos) continue;
-    notes.push_back({Note::Kind::problem, "There is no place for strands to the " + f.strand_sets[i] + ".",
-                     "They were left out; give another ball or max_length in 2_aneurysm_dissection.xml."});
+    notes.push_back(problem("no_place_for_strands", "There is no place for strands to the " + f.strand_sets[i] + ".",
+                            "They were left out; give another ball or max_length in 2_aneurysm_dissection.xml."));
     f.strand_sets.erase(f.strand_sets.begin() + std::ptrdiff_t(i));
     return true;
   }
@@ -101,8 +101,9 @@ class StrandChoice {
   void tell(int count, int hidden) {
     notes_.push_back({Note::Kind::fact, fmt::format("{} strands tie the aneurysm down.", count), ""});
     if (hidden > 0)
-      notes_.push_back({Note::Kind::problem, fmt::format("{} of them are out of the dissector's reach.", hidden),
-                        "Give the strands another ball in 2_aneurysm_dissection.xml, nearer to the surgeon."});
+      notes_.push_back(problem("strands_out_of_reach",
+                               fmt::format("{} of them are out of the dissector's reach.", hidden),
+                               "Give the strands another ball in 2_aneurysm_dissection.xml, nearer to the surgeon."));
   }
 
   SceneFacts& f_;
@@ -146,9 +147,9 @@ void spin_strands(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::v
   f.rehearsed = true;
   write_exercises(f, folder);
   if (standing > 0)
-    notes.push_back(
-        {Note::Kind::problem, fmt::format("The scripted hands leave {} of {} strands in exercise 2.", standing, count),
-         "They are out of reach from the surgeon's side: give the strands another ball in 2_aneurysm_dissection.xml."});
+    notes.push_back(problem(
+        "strands_left", fmt::format("The scripted hands leave {} of {} strands in exercise 2.", standing, count),
+        "They are out of reach from the surgeon's side: give the strands another ball in 2_aneurysm_dissection.xml."));
 }
 
 }  // namespace insula::case_builder

@@ -204,9 +204,10 @@ void check_shape(const artery::Quality& q, const std::string& what, std::vector<
                     "--threshold or less --smooth may part them",
                     what, (2 - q.euler) / 2, ending((2 - q.euler) / 2)));
   if (q.self_intersecting)
-    notes.push_back({Note::Kind::problem, "The given surface runs through itself.",
-                     "The wall is made of new triangles, which are checked again; if they are found wanting, make the "
-                     "surface anew from a grid with --rebuild \"0.2 mm\"."});
+    notes.push_back(
+        problem("input_self_intersecting", "The given surface runs through itself.",
+                "The wall is made of new triangles, which are checked again; if they are found wanting, make the "
+                "surface anew from a grid with --rebuild \"0.2 mm\"."));
 }
 
 }  // namespace

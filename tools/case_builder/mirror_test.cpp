@@ -10,8 +10,8 @@
 #include "tools/case_builder/brain_for_test.h"
 #include "tools/case_builder/commands.h"
 #include "tools/case_builder/intake.h"
+#include "tools/case_builder/measured_scene.h"
 #include "tools/case_builder/project.h"
-#include "tools/case_builder/report.h"
 #include "tools/case_builder/scenes.h"
 #ifdef INSULA_WITH_ITK
 #include "tools/case_builder/volume_reader.h"
@@ -42,7 +42,7 @@ std::string said(const std::vector<std::string>& words, int& status) {
 std::map<std::string, std::string> texts_of(const fs::path& folder) {
   std::map<std::string, std::string> out;
   for (const auto& f : fs::recursive_directory_iterator(folder))
-    if (f.is_regular_file() && f.path().filename() != "report.html" && f.path().filename() != "case.json" &&
+    if (f.is_regular_file() && f.path().stem() != "report" && f.path().filename() != "case.json" &&
         f.path().string().find("/meshes/") == std::string::npos)
       out[f.path().lexically_relative(folder).string()] = read_file_bytes(f.path());
   return out;

@@ -34,9 +34,10 @@ void try_opening(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::ve
     progress.step("playing the opening");
     const std::string wrong = complaint(scene, progress);
     if (wrong.empty()) return;
-    notes.push_back({Note::Kind::problem,
-                     "The scripted hands of exercise 1 are those of the shipped lobes; in this fissure: " + wrong + ".",
-                     "They were left out. Open it by hand."});
+    notes.push_back(
+        problem("opening_motion_fails",
+                "The scripted hands of exercise 1 are those of the shipped lobes; in this fissure: " + wrong + ".",
+                "They were left out. Open it by hand."));
     write(false);
   }
   std::error_code ignored;

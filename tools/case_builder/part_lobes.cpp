@@ -265,10 +265,10 @@ class PartedLobes {
       const double least = lobe_[i].min_volume();
       if (least < 0.15)
         notes.push_back(
-            {Note::Kind::problem,
-             fmt::format("The {} lobe had to be parted so far that an element has {:.0f} % of its volume left.",
-                         rooms[i].what, 100 * least),
-             "Keep less of the vessel (--keep), or turn it (--spin), so that it needs less room."});
+            problem("lobe_squeezed",
+                    fmt::format("The {} lobe had to be parted so far that an element has {:.0f} % of its volume left.",
+                                rooms[i].what, 100 * least),
+                    "Keep less of the vessel (--keep), or turn it (--spin), so that it needs less room."));
     }
   }
 
@@ -303,9 +303,9 @@ void tell_room(const Room& r, std::vector<Note>& notes) {
              r.what, r.moved, r.after, r.before),
          ""});
   if (r.after < 0.05)
-    notes.push_back({Note::Kind::problem,
-                     fmt::format("The {} still overlaps the wall or touches it ({:.2f} mm).", r.what, r.after),
-                     "Keep less of the vessel (--keep), or turn it (--spin)."});
+    notes.push_back(problem("overlap",
+                            fmt::format("The {} still overlaps the wall or touches it ({:.2f} mm).", r.what, r.after),
+                            "Keep less of the vessel (--keep), or turn it (--spin)."));
 }
 
 }  // namespace

@@ -97,8 +97,9 @@ void script_rupture(const CaseFolder& folder, const artery::Vessel& vessel, cons
   }
   write(best_height);
   if (!best.told.empty())
-    notes.push_back({Note::Kind::problem, "The scripted hands of exercise 4 are not perfect: " + best.told + ".",
-                     "Place the clip of that exercise by hand, or choose another one with --clip."});
+    notes.push_back(problem("rupture_motion_fails",
+                            "The scripted hands of exercise 4 are not perfect: " + best.told + ".",
+                            "Place the clip of that exercise by hand, or choose another one with --clip."));
 }
 
 }  // namespace insula::case_builder

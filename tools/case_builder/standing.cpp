@@ -152,27 +152,30 @@ std::vector<Note> judged(const Standing& standing) {
       "The arms, the hands and the microscope stand about the fissure of a brain in the MNI frame: register yours to "
       "it better, or move the arms in a copy of scenes/parts/retracted_fissure.xml.";
   std::vector<Note> notes;
-  const auto tell = [&](bool good, std::string text) {
-    notes.push_back({good ? Note::Kind::fact : Note::Kind::problem, std::move(text), good ? "" : where});
+  const auto tell = [&](bool good, const char* id, std::string text) {
+    notes.push_back(good ? Note{Note::Kind::fact, std::move(text), ""} : problem(id, std::move(text), where));
   };
   for (const StandingArm& arm : standing.arms) {
-    if (arm.lobe.empty()) tell(false, fmt::format("{} holds no lobe.", arm.id));
+    if (arm.lobe.empty()) tell(false, "retractor_holds_nothing", fmt::format("{} holds no lobe.", arm.id));
     else
-      tell(arm.force >= min_force && arm.force <= max_force,
+      tell(arm.force >= min_force && arm.force <= max_force, "retractor_force",
            fmt::format("{} holds the {} lobe with {:.2f} N.", arm.id, arm.lobe, arm.force));
-    if (arm.deepest > max_depth) tell(false, fmt::format("{} stands {:.1f} mm deep in tissue.", arm.id, arm.deepest));
+    if (arm.deepest > max_depth)
+      tell(false, "retractor_in_tissue", fmt::format("{} stands {:.1f} mm deep in tissue.", arm.id, arm.deepest));
   }
   for (std::size_t i = 0; i < standing.arms.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!standing.arms[i].lobe.empty() && standing.arms[i].lobe == standing.arms[j].lobe)
-        tell(false, fmt::format("{} and {} both hold the {} lobe.", standing.arms[j].id, standing.arms[i].id,
-                                standing.arms[i].lobe));
+        tell(false, "retractors_hold_one_lobe",
+             fmt::format("{} and {} both hold the {} lobe.", standing.arms[j].id, standing.arms[i].id,
+                         standing.arms[i].lobe));
   if (standing.has_sac)
-    tell(standing.seen >= min_seen,
+    tell(standing.seen >= min_seen, "sac_hidden",
          fmt::format("The microscope sees {:.0f} % of the sac's side towards it.", 100 * standing.seen));
   for (const RestlessLobe& lobe : standing.restless)
-    tell(false, fmt::format("The {} lobe does not come to rest: {:.0f} mm/s.", lobe.id, lobe.speed));
-  for (const std::string& id : standing.in_tissue) tell(false, fmt::format("{} starts within tissue or bone.", id));
+    tell(false, "lobe_restless", fmt::format("The {} lobe does not come to rest: {:.0f} mm/s.", lobe.id, lobe.speed));
+  for (const std::string& id : standing.in_tissue)
+    tell(false, "tool_in_tissue", fmt::format("{} starts within tissue or bone.", id));
   return notes;
 }
 

@@ -100,8 +100,8 @@ artery::Surface trimmed(const artery::Surface& surface, const std::vector<artery
         }
       }
       if (!done)
-        notes.push_back({Note::Kind::problem, lines[l].name + " could not be cut off: " + why,
-                         "Cut it in the program that made the surface, or with --cut."});
+        notes.push_back(problem("end_not_cut", lines[l].name + " could not be cut off: " + why,
+                                "Cut it in the program that made the surface, or with --cut."));
     }
   }
   return s;

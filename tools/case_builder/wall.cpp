@@ -84,7 +84,6 @@ Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<N
   artery::Surface s = with_inlet_first(surface, o);
   artery::ImportOptions options;
   options.vertices = o.vertices;
-  options.narrow_neck = true;
   options.neck = wanted_neck(o);
   progress.step("centrelines and proposed neck");
   Vessel v = made(s, options);
@@ -99,6 +98,7 @@ Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<N
         "no sac was found: nothing of the wall bulges out of the vessels by half of their radius. If there is an "
         "aneurysm, give its neck: --neck \"X Y Z mm NX NY NZ\" (a point in the neck and the direction to the dome)");
   const bool given = options.neck.has_value();
+  const std::vector<artery::NeckProposal> proposals = v.proposals;
   if (o.keep > 0) {
     progress.step("cutting the ends");
     const std::size_t before = notes.size();
@@ -110,6 +110,7 @@ Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<N
       progress.step("the wall's triangles");
       if (!options.neck) options.neck = neck;  // the same place, now on finer triangles
       v = made(s, options);
+      v.proposals = proposals;
     }
   }
   if (v.wall.caps.size() < 2)
@@ -152,6 +153,28 @@ std::vector<WallOf> walls_of(const Vessel& v) {
   return out;
 }
 
+namespace {
+
+/// For the report: how sure the neck is, and every proposal as an option in the frame of the author's files.
+Json neck_json(const Vessel& v, bool mirrored) {
+  Json out;
+  out["confidence"] = rounded(artery::neck_confidence(v.proposals));
+  out["proposals"] = Json::array();
+  for (const artery::NeckProposal& p : v.proposals) {
+    Vec3 c = p.plane.centre, n = p.plane.normal;
+    if (mirrored) c.x() = -c.x(), n.x() = -n.x();
+    out["proposals"].push_back({{"method", p.method},
+                                {"diameter_mm", rounded(p.diameter)},
+                                {"agreement", rounded(p.agreement)},
+                                {"planar", p.planar},
+                                {"option", fmt::format("{:.2f} {:.2f} {:.2f} mm {:.3f} {:.3f} {:.3f}", c.x(), c.y(),
+                                                       c.z(), n.x(), n.y(), n.z())}});
+  }
+  return out;
+}
+
+}  // namespace
+
 void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
   progress.stage("wall", 5);
   const Intake in = read_intake(folder);
@@ -166,6 +189,7 @@ void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
   json["walls"] = Json::array();
   for (const WallOf& w : walls_of(v))
     json["walls"].push_back({{"regions", w.region}, {"thickness_mm", w.thickness_mm}, {"young_MPa", w.young_mpa}});
+  json["neck"] = neck_json(v, o.mirror);
   json["notes"] = to_json(notes);
   write_json(folder.wall() / "notes.json", json);
   progress.finish();

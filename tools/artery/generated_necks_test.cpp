@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The proposed neck of thirty generated arteries: it stands where the dome was joined, and no vessel is in the sac.
+#include <gtest/gtest.h>
+
+#include "generated_artery_for_test.h"
+#include "import_parts.h"
+
+namespace insula::artery {
+namespace {
+
+class GeneratedNeck : public testing::TestWithParam<test::GeneratedArtery> {};
+
+/// Vertices of the found sac and of the true dome.
+struct Counted {
+  int sac = 0, sac_on_vessels = 0, dome = 0, missed = 0;
+};
+Counted counted(const Vessel& v, const test::GeneratedArtery& truth) {
+  Counted n;
+  for (std::size_t i = 0; i < v.region.size(); ++i) {
+    const Vec3& p = v.wall.mesh.vertices[i];
+    const std::string& region = v.regions[std::size_t(v.region[i])];
+    const double off_vessels = truth.of_vessels(p);  // mm from their walls
+    n.sac += region == "sac";
+    n.sac_on_vessels += region == "sac" && off_vessels < 0.1;
+    const bool of_dome = off_vessels > 0.6 && truth.of_dome(p) < 0.1;
+    n.dome += of_dome;
+    n.missed += of_dome && region != "sac" && region != "neck";
+  }
+  return n;
+}
+
+TEST_P(GeneratedNeck, StandsWhereTheDomeWasJoined) {
+  const test::GeneratedArtery& truth = GetParam();
+  const Surface surface = truth.surface();
+  ASSERT_EQ(quality(surface.mesh).euler, 2);
+  const Vessel v = vessel_of(surface, {});
+  ASSERT_TRUE(v.neck);
+  const Vec3 apart = v.neck->centre - truth.dome.root;
+  const double up = apart.dot(truth.dome.axis), aside = (apart - up * truth.dome.axis).norm();
+  const double angle = std::acos(std::min(1.0, v.neck->normal.dot(truth.dome.axis))) * 180 / std::numbers::pi;
+  EXPECT_LT(angle, 22);
+  EXPECT_LT(aside, 0.3);
+  EXPECT_GT(up, -0.5);
+  EXPECT_LT(up, 0.55 * (truth.dome.lift + 2) * truth.dome.half_height);
+  // The true figure is that of the stem without its fillet and without what a flat dome adds to it.
+  EXPECT_GT(v.neck->diameter, 0.95 * truth.dome.neck_diameter);
+  EXPECT_LT(v.neck->diameter, 1.35 * truth.dome.neck_diameter);
+  const Counted n = counted(v, truth);
+  EXPECT_GT(n.sac, 25);
+  EXPECT_EQ(n.sac_on_vessels, 0);
+  // A neck that leaves much of the dome to the vessels is said to be unsure.
+  if (neck_confidence(v.proposals) > 0.85) {
+    EXPECT_LE(n.missed, 0.11 * n.dome);
+  }
+  EXPECT_LE(n.missed, 0.3 * n.dome);
+}
+
+INSTANTIATE_TEST_SUITE_P(Thirty, GeneratedNeck, testing::ValuesIn(test::generated_arteries()),
+                         [](const auto& p) { return p.param.name; });
+
+TEST(NeckProposals, AgreeOnAClearNeckMoreThanOnABlister) {
+  double plain = 0, blister = 0;
+  for (const test::GeneratedArtery& a : test::generated_arteries())
+    if (a.name == "side_plain" || a.name == "blister") {
+      const Vessel v = vessel_of(a.surface(), {});
+      ASSERT_EQ(v.proposals.size(), 3u);
+      (a.name == "blister" ? blister : plain) = neck_confidence(v.proposals);
+    }
+  EXPECT_GT(plain, 0.95);
+  EXPECT_LT(blister, 0.85);
+}
+
+TEST(NeckProposals, AGivenNeckIsTakenAsSure) {
+  const Surface surface = test::generated_arteries().front().surface();
+  ImportOptions options;
+  options.neck = vessel_of(surface, {}).proposals.front().plane;
+  const Vessel v = vessel_of(surface, options);
+  EXPECT_TRUE(v.proposals.empty());
+  EXPECT_EQ(neck_confidence(v.proposals), 1);
+}
+
+}  // namespace
+}  // namespace insula::artery
