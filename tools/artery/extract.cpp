@@ -22,16 +22,24 @@ struct Grid {
   }
 };
 
+Grid grid_of(const NodeValues& nodes) { return {nodes.low, nodes.step, {nodes.size[0], nodes.size[1], nodes.size[2]}}; }
+
 }  // namespace
 
 TriMesh extract(const std::function<double(const Vec3&)>& value, const Vec3& low, const Vec3& high, double step) {
-  Grid grid{low, step, {}};
-  for (int a = 0; a < 3; ++a) grid.n[std::size_t(a)] = std::int64_t(std::ceil((high[a] - low[a]) / step)) + 1;
-  std::vector<double> f(std::size_t(grid.n[0] * grid.n[1] * grid.n[2]));
-  for (std::size_t v = 0; v < f.size(); ++v) {
-    f[v] = value(grid.point(std::int64_t(v)));
-    if (f[v] == 0) f[v] = 1e-12;
-  }
+  NodeValues nodes{low, step, {}, {}};
+  for (int a = 0; a < 3; ++a) nodes.size[std::size_t(a)] = int(std::ceil((high[a] - low[a]) / step)) + 1;
+  const Grid grid = grid_of(nodes);
+  nodes.value.resize(std::size_t(grid.n[0] * grid.n[1] * grid.n[2]));
+  for (std::size_t v = 0; v < nodes.value.size(); ++v) nodes.value[v] = value(grid.point(std::int64_t(v)));
+  return extract(std::move(nodes));
+}
+
+TriMesh extract(NodeValues nodes) {
+  const Grid grid = grid_of(nodes);
+  std::vector<double>& f = nodes.value;
+  for (double& v : f)
+    if (v == 0) v = 1e-12;
   TriMesh out;
   std::map<std::pair<std::int64_t, std::int64_t>, int> made;
   const auto crossing = [&](std::int64_t a, std::int64_t b) {

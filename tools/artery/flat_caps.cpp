@@ -12,7 +12,8 @@ namespace insula::artery {
 namespace {
 
 constexpr double flat_deg = 20;             // what a label volume's smoothed surface needs
-constexpr double min_area_share = 0.003;    // of the whole surface
+constexpr double alike_deg = 5;             // seeds that face so nearly the same way grow into the same patch
+constexpr double min_area_share = 0.0015;   // of the whole surface
 constexpr double min_roundness = 0.5;       // 4 pi area / perimeter^2: 1 for a circle, 0.5 for an ellipse of 1 to 3.6
 constexpr double rim_width = 0.35;          // times the cap's radius: within it the surface must have turned away
 constexpr int sectors = 8, min_turned = 7;  // the surface bends away in all sectors but one
@@ -73,16 +74,20 @@ struct FlatCap {
 /// Grows flat patches and decides which of them are caps.
 class CapFinder {
  public:
-  explicit CapFinder(const Facets& f) : f_(f), taken_(f.count()), mark_(f.count(), -1), ring_mark_(f.count(), -1) {}
+  explicit CapFinder(const Facets& f)
+      : f_(f), taken_(f.count()), refused_(f.count()), mark_(f.count(), -1), ring_mark_(f.count(), -1) {}
 
   std::vector<FlatCap> find() {
     std::vector<FlatCap> found;
     for (const std::size_t seed : f_.flattest_first()) {
-      if (taken_[seed]) continue;
+      if (taken_[seed] || refused_[seed]) continue;
       FlatCap cap = grow(seed, f_.normal[seed]);
       if (!large(cap)) continue;
       cap = grow(seed, cap.plane.normal);
-      if (!large(cap) || !surface_turns_away(cap)) continue;
+      if (!large(cap) || !surface_turns_away(cap)) {
+        refuse_alike(cap, f_.normal[seed]);
+        continue;
+      }
       for (const int t : cap.triangles) taken_[std::size_t(t)] = 1;
       found.push_back(std::move(cap));
     }
@@ -90,6 +95,13 @@ class CapFinder {
   }
 
  private:
+  /// On a large smooth dome every triangle would else grow its patch.
+  void refuse_alike(const FlatCap& cap, const Vec3& normal) {
+    const double alike = std::cos(alike_deg * std::numbers::pi / 180);
+    for (const int t : cap.triangles)
+      if (f_.normal[std::size_t(t)].dot(normal) > alike) refused_[std::size_t(t)] = 1;
+  }
+
   /// The triangles that are connected with the seed and face `towards`.
   FlatCap grow(std::size_t seed, const Vec3& towards) {
     FlatCap cap;
@@ -161,7 +173,7 @@ class CapFinder {
   }
 
   const Facets& f_;
-  std::vector<char> taken_;
+  std::vector<char> taken_, refused_;
   std::vector<int> mark_, ring_mark_;  ///< of each triangle: the last patch that has it in the patch or its ring
   int marks_ = 0;
   std::vector<std::pair<int, Vec3>> ring_;

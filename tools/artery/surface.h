@@ -2,6 +2,7 @@
 // A closed triangle surface whose triangles know the flat cap they belong to, and what is done to it: extraction from a
 // function, cutting by planes, closing, and isotropic remeshing. Millimetres.
 #pragma once
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -24,6 +25,16 @@ struct Surface {
 
 /// The zero set of a function inside a box, by marching tetrahedra; closed where the set does not touch the box.
 TriMesh extract(const std::function<double(const Vec3&)>& value, const Vec3& low, const Vec3& high, double step);
+
+/// Values at the nodes low + step (i, j, k) of a grid, i fastest; negative inside.
+struct NodeValues {
+  Vec3 low;
+  double step;
+  std::array<int, 3> size;
+  std::vector<double> value;
+};
+/// The same of values that are there.
+TriMesh extract(NodeValues nodes);
 
 /// Cuts what lies beyond the cap's plane within `reach` of its centre, and closes the opening by a fan.
 void cut_and_close(Surface& surface, const CapPlane& cap, double reach);

@@ -173,11 +173,8 @@ const std::vector<Given> all = {
        return test::vtp_text(m);
      },
      "names point 999999"},
-    {"in_metres", "a.stl", [] { return stl(test::scaled(tube_with_sac(), 1e-3)); }, "--unit m"},
-    {"in_centimetres", "a.stl", [] { return stl(test::scaled(tube_with_sac(), 0.1)); }, "--unit cm"},
-    {"in_micrometres", "a.stl", [] { return stl(test::scaled(tube_with_sac(), 1000)); }, "--unit um"},
-    {"ten_times_too_large", "a.stl", [] { return stl(test::scaled(tube_with_sac(), 10)); }, "10 times too large"},
-    {"three_walls_at_an_edge", "a.obj", [] { return test::obj_text(with_fin()); }, "--rebuild"},
+    {"given_a_wrong_unit", "a.stl", [] { return stl(tube_with_sac()); }, "--unit", false,
+     [](Options& o) { o.unit_mm = 1000; }},
     {"one_sided", "a.obj", [] { return test::obj_text(twisted_band()); }, "only one side"},
     {"two_vessels", "a.stl", [] { return stl(test::joined(tube_with_sac(), tube_with_sac(), Vec3(0, 20, 0))); },
      "--keep-largest"},
@@ -239,6 +236,11 @@ const std::vector<Given> all = {
 #endif
     // --- mended, and told
     // ---------------------------------------------------------------------------------------------
+    {"in_metres", "a.stl", [] { return stl(test::scaled(tube_with_sac(), 1e-3)); }, "taken times 1000", true},
+    {"in_centimetres", "a.stl", [] { return stl(test::scaled(tube_with_sac(), 0.1)); }, "taken times 10", true},
+    {"in_micrometres", "a.stl", [] { return stl(test::scaled(tube_with_sac(), 1000)); }, "divided by 1000", true},
+    {"ten_times_too_large", "a.stl", [] { return stl(test::scaled(tube_with_sac(), 10)); }, "divided by 10", true},
+    {"three_walls_at_an_edge", "a.obj", [] { return test::obj_text(with_fin()); }, "made anew from a grid", true},
     {"open_ends", "a.stl", [] { return stl(test::open_tube()); }, "closed by flat caps", true},
     {"ends_cut_askew", "a.stl", [] { return stl(slanted()); }, "cut straight", true},
     {"inside_out", "a.stl", [] { return stl(turned(tube_with_sac(), 1)); }, "inside out", true},

@@ -14,6 +14,7 @@
 #include "core/model/geometry/box_tree.h"
 #include "core/model/geometry/triangle_distance.h"
 #include "tools/artery/import_parts.h"
+#include "tools/case_builder/handles.h"
 #include "tools/mesh_lobes/grid_ops.h"
 
 namespace insula::case_builder {
@@ -28,7 +29,7 @@ constexpr double wanted_triangles = 20000, even_triangles = 9000;
 
 /// The border of what is positive, in cubes of the grid's spacing, or larger ones where that would give far more
 /// triangles than are needed.
-TriMesh zero_set(const Grid& grid, const Field& inside) {
+TriMesh zero_set(const Grid& grid, const Field& inside, std::vector<Note>& notes) {
   double faces = 0;
   for (int k = 0; k < grid.size[2]; ++k)
     for (int j = 0; j < grid.size[1]; ++j)
@@ -36,13 +37,23 @@ TriMesh zero_set(const Grid& grid, const Field& inside) {
         faces += (inside[grid.index(i, j, k)] > 0) != (inside[grid.index(i + 1, j, k)] > 0);
   const double area = 2 * faces * grid.spacing * grid.spacing;  // a third of the walls face along x
   const double step = std::clamp(std::sqrt(10 * area / wanted_triangles), grid.spacing, 4 * grid.spacing);
-  const Vec3 low(grid.origin[0], grid.origin[1], grid.origin[2]);
-  const Vec3 high = low + grid.spacing * Vec3(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1);
-  TriMesh mesh = artery::extract(
-      [&](const Vec3& p) {
-        return -mesh_tool::sample(grid, inside, {p.x(), p.y(), p.z()});
-      },
-      low, high - Vec3::Constant(step), step);
+  Grid nodes{{}, grid.origin, step};
+  for (std::size_t a = 0; a < 3; ++a)
+    nodes.size[a] = int(std::ceil((grid.spacing * (grid.size[a] - 1) - step) / step)) + 1;
+  Field sampled(nodes.count());
+  std::size_t n = 0;
+  for (int k = 0; k < nodes.size[2]; ++k)
+    for (int j = 0; j < nodes.size[1]; ++j)
+      for (int i = 0; i < nodes.size[0]; ++i)
+        sampled[n++] = float(mesh_tool::sample(grid, inside, nodes.point(i, j, k)));
+  if (const PartedHandles parted = part_handles(nodes, sampled); parted.nodes > 0)
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("Vessels that had grown together were parted at their thinnest place, near {}.",
+                                 place(parted.first)),
+                     "Look whether that is where two walls touch. If it is not, part them in the segmentation."});
+  artery::NodeValues values{Vec3(nodes.origin[0], nodes.origin[1], nodes.origin[2]), step, nodes.size, {}};
+  for (const float v : sampled) values.value.push_back(-v);
+  TriMesh mesh = artery::extract(std::move(values));
   artery::number_by_use(mesh);
   return mesh;
 }
@@ -286,7 +297,7 @@ TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::Ni
                    fmt::format("The surface was taken from voxels of {:.3g} mm, its border smoothed over {:.2g} mm.",
                                vessel.fine(), o.smoothing * coarse),
                    ""});
-  TriMesh out = evened(zero_set(grid, inside));
+  TriMesh out = evened(zero_set(grid, inside, notes));
   ends = border_ends(
       v, [&](float x) { return vessel.is_vessel(x); }, out, 1.2 * coarse);
   if (!ends.empty())
@@ -345,7 +356,7 @@ mesh_tool::Mask inside_of(const TriMesh& m, const Grid& grid) {
   return mask;
 }
 
-TriMesh rebuilt(const TriMesh& m, double spacing) {
+TriMesh rebuilt(const TriMesh& m, double spacing, std::vector<Note>& notes) {
   Box box;
   std::vector<Box> boxes;
   for (const auto& t : m.triangles) {
@@ -383,7 +394,7 @@ TriMesh rebuilt(const TriMesh& m, double spacing) {
     const double d = std::sqrt(distance2(tree.nearest(p, distance2)));
     if (d < 1.5 * spacing) inside[i] = float(mask[i] ? d : -d);
   }
-  TriMesh out = zero_set(grid, inside);
+  TriMesh out = zero_set(grid, inside, notes);
   if (out.triangles.empty())
     throw InputError("nothing is left of the surface on that grid: it encloses nothing, or the grid is too coarse");
   return evened(out);

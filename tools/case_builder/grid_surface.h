@@ -17,7 +17,8 @@ TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::Ni
 /// grid.
 mesh_tool::Mask inside_of(const TriMesh& mesh, const mesh_tool::Grid& grid);
 
-/// A closed surface made anew from a grid of that spacing: what an odd number of walls lies around is inside.
-TriMesh rebuilt(const TriMesh& mesh, double spacing);
+/// A closed surface without handles, made anew from a grid of that spacing: what an odd number of walls lies around is
+/// inside.
+TriMesh rebuilt(const TriMesh& mesh, double spacing, std::vector<Note>& notes);
 
 }  // namespace insula::case_builder

@@ -16,6 +16,7 @@
 #include "tools/case_builder/openings.h"
 #include "tools/case_builder/size_check.h"
 #include "tools/case_builder/surface_input.h"
+#include "tools/case_builder/tidy.h"
 #include "tools/case_builder/topology.h"
 #include "tools/case_builder/volume_input.h"
 
@@ -26,7 +27,13 @@ constexpr std::size_t max_triangles = 2'000'000;   // what is read at all
 constexpr std::size_t many_triangles = 150'000;    // more are made anew from a grid
 constexpr std::uintmax_t max_bytes = 220'000'000;  // of a surface file: beyond that it has more than those triangles
 
-const char* ending(int n) { return n == 1 ? "" : "s"; }
+/// Tells that a surface of a size that no artery has was scaled by a power of ten.
+Note scaled_by(double factor, const char* what, double was) {
+  return {Note::Kind::repair,
+          fmt::format("The {} was {:.3g} mm across, which no cerebral artery has. Its numbers were taken {} {:g}.",
+                      what, was, factor < 1 ? "divided by" : "times", factor < 1 ? 1 / factor : factor),
+          "Positions that you give are in the scaled millimetres. Say the file's unit with --unit if this is wrong."};
+}
 
 TriMesh read_surface_mm(const fs::path& input, const Options& o, std::vector<Note>& notes) {
   const std::string kind = lower_extension(input);
@@ -50,67 +57,15 @@ TriMesh read_surface_mm(const fs::path& input, const Options& o, std::vector<Not
   TriMesh m = read_any_surface(input, unit);
   if (o.mirror) mirror(m);
   if (m.triangles.size() > max_triangles) too_many(m.triangles.size());
-  if (!o.any_size)
-    if (const std::string why = check_extent(extent_of(m), unit); !why.empty())
-      fail(input, why + "; --any-size takes it all the same");
-  return m;
-}
-
-/// Triangles that agree, in one piece, without doubles.
-void tidy(TriMesh& m, const std::string& what, const Options& o, std::vector<Note>& notes) {
-  const double size = extent_of(m);
-  if (const int n = weld(m, 1e-6 * size); n > 0)
-    notes.push_back({Note::Kind::repair,
-                     fmt::format("{} vertices that lay on others to a millionth of the size were joined.", n), ""});
-  if (const int n = drop_doubles(m); n > 0)
-    notes.push_back({Note::Kind::repair,
-                     fmt::format("{} triangle{} that {} there twice {} left out.", n, ending(n),
-                                 n == 1 ? "was" : "were", n == 1 ? "was" : "were"),
-                     ""});
-  if (m.triangles.empty()) throw InputError(what + ": holds no triangle with an area");
-  if (const BadEdges bad = non_manifold_edges(m); bad.count > 0)
-    throw InputError(
-        fmt::format("{}: {} edge{} to three or more triangles (the first at {}): walls meet there inside of the "
-                    "vessel. Mend it in the program that made it, or make the surface "
-                    "anew from a grid with --rebuild \"0.2 mm\"",
-                    what, bad.count, bad.count == 1 ? " belongs" : "s belong", place(bad.first)));
-  Pieces pieces = pieces_of(m);
-  if (pieces.area.size() > 1) {
-    double whole = 0;
-    for (const double a : pieces.area) whole += a;
-    int keep = 0;
-    if (o.seed) {
-      const Vec3 seed((*o.seed)[0], (*o.seed)[1], (*o.seed)[2]);
-      double least = 1e300;
-      for (std::size_t t = 0; t < m.triangles.size(); ++t)
-        if (const double d = (m.vertices[std::size_t(m.triangles[t][0])] - seed).norm(); d < least)
-          least = d, keep = pieces.of[t];
-    } else if (pieces.area[0] < 0.9 * whole && !o.keep_largest) {
-      throw InputError(
-          fmt::format("{}: is in {} pieces; the largest has {:.0f} % of the area, the next {:.0f} %. Name a point on "
-                      "the wanted one with --seed \"X Y Z mm\", or take the largest with --keep-largest",
-                      what, pieces.area.size(), 100 * pieces.area[0] / whole, 100 * pieces.area[1] / whole));
-    }
-    notes.push_back(
-        {Note::Kind::repair,
-         fmt::format("The surface was in {} pieces; the {} one was kept, {:.1f} % of the area.", pieces.area.size(),
-                     o.seed ? "wanted" : "largest", 100 * pieces.area[std::size_t(keep)] / whole),
-         ""});
-    keep_piece(m, pieces, keep);
+  if (o.any_size) return m;
+  const double extent = extent_of(m);
+  if (const auto factor = scale_of_extent(extent); factor && !o.unit_mm) {
+    for (Vec3& p : m.vertices) p *= *factor;
+    notes.push_back(scaled_by(*factor, "surface", extent));
+  } else if (const std::string why = check_extent(extent, unit); !why.empty()) {
+    fail(input, why + "; --any-size takes it all the same");
   }
-  const int turned = agree(m);
-  if (turned < 0)
-    throw InputError(what + ": its surface has only one side (a twisted band); mend it in the program that made it");
-  if (turned > 0)
-    notes.push_back({Note::Kind::repair,
-                     fmt::format("{} triangle{} that faced the wrong way {} turned.", turned, ending(turned),
-                                 turned == 1 ? "was" : "were"),
-                     ""});
-  if (const int n = part_fans(m); n > 0)
-    notes.push_back({Note::Kind::repair,
-                     fmt::format("{} place{} where the surface touched itself in a point {} parted.", n, ending(n),
-                                 n == 1 ? "was" : "were"),
-                     ""});
+  return m;
 }
 
 void check_inside(artery::Surface& s, const std::string& what, std::vector<Note>& notes) {
@@ -127,23 +82,6 @@ void check_inside(artery::Surface& s, const std::string& what, std::vector<Note>
         fmt::format("{}: encloses next to nothing (it is {:.3g} mm thick for {:.3g} mm of length): a sheet without "
                     "thickness, or an inner and an outer wall. A vessel is given by one surface",
                     what, 2 * thick, extent_of(s.mesh)));
-}
-
-/// Remeshes a surface that has far more triangles than its shape needs. Its ends do not change.
-void thin_out(artery::Surface& s, const std::string& what, const Options& o, std::vector<Note>& notes) {
-  if (s.mesh.triangles.size() <= many_triangles) return;
-  const std::vector<artery::CapPlane> caps = s.caps;
-  const double spacing = std::clamp(std::sqrt(area(s.mesh) / 20000), 0.08, 0.4);
-  const std::size_t before = s.mesh.triangles.size();
-  TriMesh m = rebuilt(s.mesh, spacing);
-  tidy(m, what, o, notes);
-  s = artery::Surface{m, std::vector<int>(m.triangles.size(), -1), {}};
-  for (const artery::CapPlane& cap : caps) cut_off(s, cap.centre - spacing * cap.normal, cap.normal, cap.name);
-  notes.push_back({Note::Kind::repair,
-                   fmt::format("The surface had {} triangles, far more than its shape needs; it was made anew from a "
-                               "grid of {:.2g} mm: {} triangles.",
-                               before, spacing, s.mesh.triangles.size()),
-                   ""});
 }
 
 void make_cuts(artery::Surface& s, const Options& o) {
@@ -173,6 +111,17 @@ const char* add_flat_ends(artery::Surface& s) {
   return "borders and cuts";
 }
 
+/// A surface whose openings are too wide or too narrow for an artery by a power of ten is scaled.
+void scale_by_calibre(artery::Surface& s, std::vector<Note>& notes) {
+  double widest = 0;
+  for (const artery::CapPlane& cap : s.caps) widest = std::max(widest, 2 * cap.radius);
+  const auto factor = scale_of_calibre(widest);
+  if (!factor) return;
+  for (Vec3& p : s.mesh.vertices) p *= *factor;
+  for (artery::CapPlane& cap : s.caps) cap.centre *= *factor, cap.radius *= *factor;
+  notes.push_back(scaled_by(*factor, "widest opening", widest));
+}
+
 /// Sorts the openings by calibre, the widest first, and names them in this order.
 Json name_openings(artery::Surface& s) {
   std::vector<int> order(s.caps.size()), rank(s.caps.size());
@@ -195,19 +144,21 @@ Json name_openings(artery::Surface& s) {
   return openings;
 }
 
-/// Throws if the surface has handles. Adds a note if the surface intersects itself.
-void check_shape(const artery::Quality& q, const std::string& what, std::vector<Note>& notes) {
+/// A surface with handles, or one that runs through itself, is made anew. Throws InputError if it then still has a
+/// handle.
+void mend_shape(artery::Surface& s, const std::string& what, const Options& o, std::vector<Note>& notes) {
+  artery::Quality q = artery::quality(s.mesh);
+  if (q.euler == 2 && !q.self_intersecting) return;
+  make_anew(s,
+            q.euler != 2 ? "The surface had a handle, as of two vessels that touch" : "The surface ran through itself",
+            what, o, notes);
+  q = artery::quality(s.mesh);
   if (q.euler != 2)
     throw InputError(
         fmt::format("{}: has {} handle{}: two branches touch and have grown together, or a hole runs through the wall. "
                     "Part them in the program that made the surface; with a volume, a higher "
                     "--threshold or less --smooth may part them",
                     what, (2 - q.euler) / 2, ending((2 - q.euler) / 2)));
-  if (q.self_intersecting)
-    notes.push_back(
-        problem("input_self_intersecting", "The given surface runs through itself.",
-                "The wall is made of new triangles, which are checked again; if they are found wanting, make the "
-                "surface anew from a grid with --rebuild \"0.2 mm\"."));
 }
 
 }  // namespace
@@ -217,14 +168,16 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
   out.facts["triangles_given"] = m.triangles.size();
   if (m.triangles.empty()) throw InputError(what + ": holds no triangles");
   if (o.rebuild) {
-    m = rebuilt(m, *o.rebuild);
+    m = rebuilt(m, *o.rebuild, notes);
     notes.push_back({Note::Kind::repair,
                      fmt::format("The surface was made anew from a grid of {:.3g} mm, as asked for.", *o.rebuild), ""});
   }
-  tidy(m, what, o, notes);
+  tidy_or_rebuild(m, what, o, notes);
   artery::Surface s = closed_surface(m, notes);
   check_inside(s, what, notes);
-  thin_out(s, what, o, notes);
+  if (s.mesh.triangles.size() > many_triangles)
+    make_anew(s, fmt::format("The surface had {} triangles, far more than its shape needs", s.mesh.triangles.size()),
+              what, o, notes);
   make_cuts(s, o);
   out.facts["openings_found_by"] = add_flat_ends(s);
   if (s.caps.size() < 2)
@@ -233,12 +186,19 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
                     "and closed flat; where they are rounded, cut them with --cut \"X Y Z mm NX NY NZ\" "
                     "(a point in the vessel and the direction of what is to go), once an end",
                     what, s.caps.size(), ending(int(s.caps.size()))));
+  mend_shape(s, what, o, notes);
+  const bool of_volume = o.label || o.threshold;
+  if (!o.any_size && !o.unit_mm && !of_volume) scale_by_calibre(s, notes);
   const Json openings = name_openings(s);
   if (!o.any_size)
     if (const std::string why = check_calibre(2 * s.caps[0].radius, o.unit_mm.value_or(1)); !why.empty())
       throw InputError(what + ": " + why + "; --any-size takes it all the same");
   const artery::Quality q = artery::quality(s.mesh);
-  check_shape(q, what, notes);
+  if (q.self_intersecting)
+    notes.push_back(
+        problem("input_self_intersecting", "The given surface runs through itself.",
+                "The wall is made of new triangles, which are checked again; if they are found wanting, make the "
+                "surface anew from a grid with --rebuild \"0.2 mm\"."));
   out.facts["openings"] = openings;
   out.facts["triangles"] = s.mesh.triangles.size();
   out.facts["extent_mm"] = rounded(extent_of(s.mesh));

@@ -43,14 +43,22 @@ std::string check(double size, double mm_per_unit, const Usual& usual) {
                      usual.kind, usual.least, usual.most, advice(size, mm_per_unit, usual));
 }
 
+constexpr Usual of_extent{"surface", "stretch of cerebral artery", 30, min_extent, max_extent, "--unit"};
+constexpr Usual of_calibre{"widest opening", "cerebral artery", 2.5, min_calibre, max_calibre, "--unit"};
+
+std::optional<double> scale(double size, const Usual& usual) {
+  if (!(size > 0) || (size >= usual.least && size <= usual.most)) return std::nullopt;
+  const double factor = std::pow(10.0, std::round(std::log10(usual.size / size)));
+  const double there = factor * size;
+  return factor != 1 && there >= usual.least && there <= usual.most ? std::optional(factor) : std::nullopt;
+}
+
 }  // namespace
 
-std::string check_extent(double extent, double unit) {
-  return check(extent, unit, {"surface", "stretch of cerebral artery", 30, min_extent, max_extent, "--unit"});
-}
-std::string check_calibre(double calibre, double unit) {
-  return check(calibre, unit, {"widest opening", "cerebral artery", 2.5, min_calibre, max_calibre, "--unit"});
-}
+std::string check_extent(double extent, double unit) { return check(extent, unit, of_extent); }
+std::string check_calibre(double calibre, double unit) { return check(calibre, unit, of_calibre); }
+std::optional<double> scale_of_extent(double extent) { return scale(extent, of_extent); }
+std::optional<double> scale_of_calibre(double calibre) { return scale(calibre, of_calibre); }
 std::string check_brain(double extent, double unit) {
   return check(extent, unit, {"surface", "part of a brain", 100, min_brain, max_brain, "--brain-unit"});
 }

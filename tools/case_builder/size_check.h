@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether sizes are those of a cerebral artery or of a brain, and which unit would make them so.
 #pragma once
+#include <optional>
 #include <string>
 
 namespace insula::case_builder {
@@ -16,5 +17,9 @@ std::string check_extent(double extent_mm, double mm_per_unit);
 std::string check_calibre(double calibre_mm, double mm_per_unit);
 /// The same for a surface of a brain.
 std::string check_brain(double extent_mm, double mm_per_unit);
+/// The power of ten that brings a vessel of a wrong size to a usual one. Nothing when its size is right, or when no
+/// power of ten makes it so.
+std::optional<double> scale_of_extent(double extent_mm);
+std::optional<double> scale_of_calibre(double calibre_mm);
 
 }  // namespace insula::case_builder

@@ -11,6 +11,7 @@
 #include "tools/artery/import_parts.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/mirror.h"
+#include "tools/case_builder/tidy.h"
 #include "tools/case_builder/trim.h"
 
 namespace insula::case_builder {
@@ -78,9 +79,7 @@ void check_sound(const Vessel& v) {
         "vertices (--vertices 2500), or make the surface anew from a grid with --rebuild \"0.2 mm\"");
 }
 
-}  // namespace
-
-Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<Note>& notes, Progress& progress) {
+Vessel wall_of(const artery::Surface& surface, const Options& o, std::vector<Note>& notes, Progress& progress) {
   artery::Surface s = with_inlet_first(surface, o);
   artery::ImportOptions options;
   options.vertices = o.vertices;
@@ -132,6 +131,26 @@ Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<N
              : "Neck and sac are a proposal: the narrowest section near the border of what bulges out of the vessels.",
        given ? "" : "Look at the pictures; move the neck with --neck \"X Y Z mm NX NY NZ\" or --neck-points."});
   return v;
+}
+
+}  // namespace
+
+Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<Note>& notes, Progress& progress) {
+  const std::vector<Note> before = notes;
+  try {
+    return wall_of(surface, o, notes, progress);
+  } catch (const InputError& e) {
+    if (o.neck || o.neck_points) throw;
+    // The given triangles may be at fault: once more with those of a grid.
+    notes = before;
+    artery::Surface again = surface;
+    try {
+      make_anew(again, fmt::format("The given triangles made no wall ({})", e.what()), "the wall", o, notes);
+      return wall_of(again, o, notes, progress);
+    } catch (const std::runtime_error&) {
+      throw InputError(e.what());
+    }
+  }
 }
 
 std::vector<WallOf> walls_of(const Vessel& v) {
