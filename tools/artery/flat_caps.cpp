@@ -17,7 +17,8 @@ constexpr double min_area_share = 0.0015;   // of the whole surface
 constexpr double min_roundness = 0.5;       // 4 pi area / perimeter^2: 1 for a circle, 0.5 for an ellipse of 1 to 3.6
 constexpr double rim_width = 0.35;          // times the cap's radius: within it the surface must have turned away
 constexpr int sectors = 8, min_turned = 7;  // the surface bends away in all sectors but one
-constexpr double max_cosine = 0.7;          // cosine of 45 degrees, the smallest mean angle of a sector
+constexpr double depth_behind = 0.6, least_behind = 0.7, most_behind = 1.6;  // in radii and diameters of a cap
+constexpr double max_cosine = 0.7;  // cosine of 45 degrees, the smallest mean angle of a sector
 
 /// Triangles of a closed surface: areas, normals, neighbours.
 struct Facets {
@@ -179,11 +180,20 @@ class CapFinder {
   std::vector<std::pair<int, Vec3>> ring_;
 };
 
+/// Whether the vessel goes on behind the cap as wide as the cap is. A flat place on the side of a vessel or a dome, as
+/// voxels leave it, has a far wider section behind it.
+bool ends_a_vessel(const TriMesh& m, const CapPlane& cap) {
+  const double behind = section_diameter(m, cap.centre - depth_behind * cap.radius * cap.normal, cap.normal,
+                                         most_behind * 2 * cap.radius);
+  return behind > least_behind * 2 * cap.radius && behind < most_behind * 2 * cap.radius;
+}
+
 }  // namespace
 
 Surface with_flat_caps(const TriMesh& m) {
   const Facets facets(m);
   std::vector<FlatCap> found = CapFinder(facets).find();
+  std::erase_if(found, [&](const FlatCap& cap) { return !ends_a_vessel(m, cap.plane); });
   std::stable_sort(found.begin(), found.end(),
                    [](const FlatCap& a, const FlatCap& b) { return a.plane.radius > b.plane.radius; });
   Surface out{m, std::vector<int>(m.triangles.size(), -1), {}};

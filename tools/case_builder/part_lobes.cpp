@@ -25,6 +25,11 @@ constexpr double margin =
     0.5;  // points so much farther than they must be are conditions too, so that they do not come back
 constexpr double deepest = 6;  // mm
 constexpr int rounds = 10;
+constexpr std::size_t most_conditions = 1200;  // at a time, the most wanting ones: a round later come the others
+
+constexpr double least_volume = 0.02;  // of an element, over what it was
+constexpr double farthest = 15;        // mm: no lobe is parted so far
+constexpr double least_room = 0.05;    // mm: with less, wall and lobe touch
 
 struct Condition {
   std::array<int, 12> node{};
@@ -255,6 +260,7 @@ class PartedLobes {
       for (std::size_t i = 0; i < 2; ++i) {
         lobe_[i].solve(conditions(i));
         rooms[i].moved = lobe_[i].write_back();
+        if (!(rooms[i].moved < farthest)) return;
         solid_[i].move(fissure_.lobes[i].surface.vertices);
       }
     }
@@ -262,7 +268,7 @@ class PartedLobes {
   void judge(std::vector<Note>& notes) {
     for (std::size_t i = 0; i < 2; ++i) {
       rooms[i].after = room(solid_[i], wall_) - wall_half;
-      const double least = lobe_[i].min_volume();
+      const double least = rooms[i].least_volume = lobe_[i].min_volume();
       if (least < 0.15)
         notes.push_back(
             problem("lobe_squeezed",
@@ -283,6 +289,12 @@ class PartedLobes {
                                          wanted_ - n.distance));
     keep_from(lobe_[i], solid_[i], floor_, 0.3, &to_floor_[i], out);
     keep_from(lobe_[i], solid_[i], solid_[1 - i], 0.6, &to_other_[i], out);
+    if (out.size() > most_conditions) {
+      const auto wanting = [&](const Condition& c) { return c.least - c.direction.dot(lobe_[i].at(c)); };
+      std::stable_sort(out.begin(), out.end(),
+                       [&](const Condition& a, const Condition& b) { return wanting(a) > wanting(b); });
+      out.resize(most_conditions);
+    }
     return out;
   }
 
@@ -302,13 +314,22 @@ void tell_room(const Room& r, std::vector<Note>& notes) {
              "The {} was parted by up to {:.1f} mm, so that it keeps {:.2f} mm from the wall (before: {:.2f} mm).",
              r.what, r.moved, r.after, r.before),
          ""});
-  if (r.after < 0.05)
+  if (r.after < least_room)
     notes.push_back(problem("overlap",
                             fmt::format("The {} still overlaps the wall or touches it ({:.2f} mm).", r.what, r.after),
                             "Keep less of the vessel (--keep), or turn it (--spin)."));
 }
 
 }  // namespace
+
+bool is_sound(const std::vector<Room>& rooms) {
+  return std::all_of(rooms.begin(), rooms.end(),
+                     [](const Room& r) { return r.least_volume > least_volume && r.moved < farthest; });
+}
+
+bool is_clear(const std::vector<Room>& rooms) {
+  return std::all_of(rooms.begin(), rooms.end(), [](const Room& r) { return r.after >= least_room; });
+}
 
 std::vector<Room> part_lobes(Fissure& fissure, const TriMesh& wall_mesh, double gap, std::vector<Note>& notes,
                              Progress& progress) {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/input_error.h"
 #include "tools/case_builder/brain.h"
 #include "tools/case_builder/wall.h"
@@ -20,35 +22,64 @@ void write_lobe(const fs::path& folder, const Lobe& lobe) {
   write_ply(folder / (lobe.name + "_surface.ply"), lobe.surface, "unit mm; a lobe parted for a vessel");
 }
 
+/// A placement with the lobes parted for it.
+struct Fitted {
+  Placement placement;
+  artery::Vessel vessel;
+  Fissure fissure;
+  std::vector<Room> rooms;
+  std::vector<Note> notes;
+  double least_room() const {
+    return std::min_element(rooms.begin(), rooms.end(), [](const Room& a, const Room& b) { return a.after < b.after; })
+        ->after;
+  }
+  bool better_than(const Fitted& other) const {
+    return std::pair(is_sound(rooms), least_room()) > std::pair(is_sound(other.rooms), other.least_room());
+  }
+};
+
+Fitted fitted(const artery::Vessel& v, const Fissure& fissure, const Placement& p, double gap, Progress& progress) {
+  Fitted out{p, placed(v, p), fissure, {}, {}};
+  out.rooms = part_lobes(out.fissure, out.vessel.wall.mesh, gap, out.notes, progress);
+  return out;
+}
+
 }  // namespace
 
 void run_place(const CaseFolder& folder, const fs::path& project, const Options& o, Progress& progress) {
   progress.stage("place", 5);
   progress.step("reading the fissure");
   const artery::Vessel v = read_wall(folder.wall());
-  Fissure fissure = read_fissure(project, o.brain.empty() ? fs::path(o.lobes) : folder.brain());
-  std::vector<Note> notes;
+  const Fissure fissure = read_fissure(project, o.brain.empty() ? fs::path(o.lobes) : folder.brain());
   // A vessel that lies in the frame of the author's own brain goes where that went.
-  const Placement p = o.in_place && !o.brain.empty() ? brain_motion(folder) : find_placement(v, fissure, o, progress);
-  const artery::Vessel there = placed(v, p);
+  const std::vector<Placement> all = o.in_place && !o.brain.empty() ? std::vector<Placement>{brain_motion(folder)}
+                                                                    : find_placements(v, fissure, o, progress);
   progress.step("parting the lobes");
-  const std::vector<Room> rooms = part_lobes(fissure, there.wall.mesh, o.gap, notes, progress);
+  Fitted best = fitted(v, fissure, all.front(), o.gap, progress);
+  for (std::size_t k = 1; k < all.size() && !(is_sound(best.rooms) && is_clear(best.rooms)); ++k)
+    if (Fitted next = fitted(v, fissure, all[k], o.gap, progress); next.better_than(best)) best = std::move(next);
+  if (!is_sound(best.rooms))
+    throw InputError(fmt::format(
+        "the vessel has no place in this fissure: its dome is {:.1f} mm high, and the lobes would have to be "
+        "crushed in each of {} placements. Keep less of the vessel (--keep), or give a brain with a wider "
+        "fissure (--brain)",
+        v.dome_height, all.size()));
   progress.step("writing");
-  artery::write_vessel(there, folder.artery());
-  for (const Lobe& lobe : fissure.lobes) write_lobe(folder.lobes(), lobe);
-  write_ply(folder.lobes() / "insula_surface.ply", fissure.insula, "unit mm; the floor of the fissure");
+  artery::write_vessel(best.vessel, folder.artery());
+  for (const Lobe& lobe : best.fissure.lobes) write_lobe(folder.lobes(), lobe);
+  write_ply(folder.lobes() / "insula_surface.ply", best.fissure.insula, "unit mm; the floor of the fissure");
   Json json;
   json["rotation"] = Json::array();
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) json["rotation"].push_back(rounded(p.rotation(r, c)));
-  json["shift_mm"] = to_json(p.shift);
+    for (int c = 0; c < 3; ++c) json["rotation"].push_back(rounded(best.placement.rotation(r, c)));
+  json["shift_mm"] = to_json(best.placement.shift);
   json["rooms"] = Json::array();
-  for (const Room& r : rooms)
+  for (const Room& r : best.rooms)
     json["rooms"].push_back({{"what", r.what},
                              {"before_mm", rounded(r.before)},
                              {"after_mm", rounded(r.after)},
                              {"moved_mm", rounded(r.moved)}});
-  json["notes"] = to_json(notes);
+  json["notes"] = to_json(best.notes);
   write_json(folder.path / "place.json", json);
   progress.finish();
 }

@@ -24,10 +24,10 @@ inline const Vec3 way_of_sac = Vec3(0.745, -0.030, 0.667).normalized();
 inline const Vec3 way_of_parent = Vec3(0.72, 0.15, 0.67).normalized();
 inline const Vec3 to_surgeon = Vec3(0.93, 0.25, 0.27).normalized();
 
-/// The placement near the shipped one with the least overlap, found on a fixed grid of turns and shifts and then
-/// refined.
-Placement find_placement(const artery::Vessel& vessel, const Fissure& fissure, const Options& options,
-                         Progress& progress);
+/// Placements near the shipped one, turned differently about the sac's axis, that with the least overlap first. Each is
+/// found on a fixed grid of turns and shifts and then refined. One alone where the turn or the place is given.
+std::vector<Placement> find_placements(const artery::Vessel& vessel, const Fissure& fissure, const Options& options,
+                                       Progress& progress);
 
 artery::Vessel placed(artery::Vessel vessel, const Placement& placement);
 
@@ -36,7 +36,13 @@ struct Room {
   std::string what;
   double before = 0, after = 0;  ///< mm
   double moved = 0;              ///< farthest that a node was moved, mm
+  double least_volume = 1;       ///< of a tetrahedron over what it was; the floor has none
 };
+
+/// Whether nothing touches the wall.
+bool is_clear(const std::vector<Room>& rooms);
+/// Whether the lobes still are meshes: no element turned inside out, no node moved out of the fissure.
+bool is_sound(const std::vector<Room>& rooms);
 
 /// Parts the lobes elastically (and draws the insula back) until each is `gap` from the wall, each other no nearer than
 /// they were.

@@ -12,7 +12,10 @@ namespace insula::case_builder {
 namespace {
 
 constexpr double reach = 12;  // mm, around the neck's position: the region in which rotations are tested
-constexpr double limit = 4;   // mm, beyond which distances do not matter
+constexpr int coarse_spins = 24;
+constexpr std::size_t most_placements = 4;
+constexpr double least_apart = 0.7;  // rad, of the turns of two placements
+constexpr double limit = 4;          // mm, beyond which distances do not matter
 
 Mat3 turn(double angle, const Vec3& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
 
@@ -92,22 +95,37 @@ struct BestTurn {
   double cost = 1e300;
 };
 
-/// The best of a regular set of rotations and shifts.
-BestTurn coarse_search(const PlacementCost& cost, bool keep_spin, Progress& progress) {
-  BestTurn best;
-  const int spins = keep_spin ? 1 : 24;
+/// The best tilt and shift of a regular set for each of some turns about the sac's axis, the best first.
+std::vector<BestTurn> coarse_search(const PlacementCost& cost, bool keep_spin, Progress& progress) {
+  std::vector<BestTurn> all;
+  const int spins = keep_spin ? 1 : coarse_spins;
   for (int i = 0; i < spins; ++i) {
     progress.share(double(i) / spins);
+    BestTurn best;
     for (const double a : {-0.35, 0.0, 0.35})
       for (const double b : {-0.35, 0.0, 0.35})
         for (const double x : {-1.5, 1.0})
           for (const double y : {-1.5, 1.0})
             for (const double z : {-1.5, 1.0}) {
-              const Turn t{cost.wanted_spin + 2 * std::numbers::pi * i / 24, a, b, Vec3(x, y, z)};
+              const Turn t{cost.wanted_spin + 2 * std::numbers::pi * i / coarse_spins, a, b, Vec3(x, y, z)};
               if (const double c = cost(t); c < best.cost) best = {t, c};
             }
+    all.push_back(best);
   }
-  return best;
+  std::stable_sort(all.begin(), all.end(), [](const BestTurn& a, const BestTurn& b) { return a.cost < b.cost; });
+  return all;
+}
+
+/// Of those, the best that are turned well apart.
+std::vector<BestTurn> apart(const std::vector<BestTurn>& all) {
+  std::vector<BestTurn> out;
+  for (const BestTurn& t : all) {
+    const bool near_another = std::any_of(out.begin(), out.end(), [&](const BestTurn& o) {
+      return std::abs(std::remainder(o.turn.spin - t.turn.spin, 2 * std::numbers::pi)) < least_apart;
+    });
+    if (!near_another && out.size() < most_placements) out.push_back(t);
+  }
+  return out;
 }
 
 /// Descends from `best` with smaller and smaller steps along each coordinate.
@@ -130,18 +148,23 @@ void refine(const PlacementCost& cost, BestTurn& best) {
 
 }  // namespace
 
-Placement find_placement(const artery::Vessel& v, const Fissure& fissure, const Options& o, Progress& progress) {
-  if (o.in_place) return {};
+std::vector<Placement> find_placements(const artery::Vessel& v, const Fissure& fissure, const Options& o,
+                                       Progress& progress) {
+  if (o.in_place) return {Placement()};
   if (!v.neck) throw InputError("a vessel without a neck has no place");
   progress.step("distances in the fissure");
   const PlacementCost cost(v, fissure, o);
   progress.step("looking for the place");
-  BestTurn best = coarse_search(cost, o.keep_spin, progress);
-  refine(cost, best);
-  Placement p;
-  p.rotation = cost.rotation(best.turn);
-  p.shift = place_of_neck + best.turn.shift - p.rotation * v.neck->centre;
-  return p;
+  std::vector<BestTurn> starts = apart(coarse_search(cost, o.keep_spin, progress));
+  for (BestTurn& t : starts) refine(cost, t);
+  std::stable_sort(starts.begin(), starts.end(), [](const BestTurn& a, const BestTurn& b) { return a.cost < b.cost; });
+  std::vector<Placement> out;
+  for (const BestTurn& t : starts) {
+    Placement& p = out.emplace_back();
+    p.rotation = cost.rotation(t.turn);
+    p.shift = place_of_neck + t.turn.shift - p.rotation * v.neck->centre;
+  }
+  return out;
 }
 
 artery::Vessel placed(artery::Vessel v, const Placement& p) {
