@@ -2,8 +2,10 @@
 # --- tests: one binary a folder; plugin tests beside their plugins ---------------------------------------------------
 # With BUILD_TESTING=OFF there are none, and GoogleTest is not needed.
 set(INSULA_TEST_DEFS INSULA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" INSULA_BINARY_DIR="${CMAKE_BINARY_DIR}")
-function(insula_test target)  # insula_test(name SOURCES ... LIBS ... [SERIAL])
-  cmake_parse_arguments(T "SERIAL" "" "SOURCES;LIBS" ${ARGN})
+# Long tests start first, so that no core idles at the end: their COST is the order of their seconds. A clean checkout
+# has no measured times.
+function(insula_test target)  # insula_test(name SOURCES ... LIBS ... [SERIAL] [COST seconds])
+  cmake_parse_arguments(T "SERIAL" "COST" "SOURCES;LIBS" ${ARGN})
   if(T_SOURCES AND BUILD_TESTING)
     add_executable(${target} ${T_SOURCES})
     target_link_libraries(${target} PRIVATE ${T_LIBS} GTest::gtest_main)
@@ -11,8 +13,12 @@ function(insula_test target)  # insula_test(name SOURCES ... LIBS ... [SERIAL])
     # What is tested is optimised in its own library. A test file is compiled alone, since tests reuse short names.
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
     set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests UNITY_BUILD OFF)
+    set(cost)
+    if(T_COST)
+      set(cost COST ${T_COST})
+    endif()
     gtest_discover_tests(${target} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
-      PROPERTIES TIMEOUT 600 RUN_SERIAL $<BOOL:${T_SERIAL}>)
+      PROPERTIES TIMEOUT 600 RUN_SERIAL $<BOOL:${T_SERIAL}> ${cost})
   endif()
 endfunction()
 if(NOT BUILD_TESTING)

@@ -118,6 +118,11 @@ FORMS = (
     ),
     Elsewhere(r"\./insula case new from_scan .*", "Volumes.ADicomSeriesIsReadByItsThreshold", "makes a series to read"),
     Elsewhere(
+        r"\./insula case new from_the_left .*",
+        "MirroredCase.IsTheCaseOfItsTwinAndPassesItsCheck",
+        "makes the case of a left side and that of its right-sided twin",
+    ),
+    Elsewhere(
         r"\./insula case new .* --brain aal\.nii\.gz .*",
         "OwnBrain.LabelsOfAVolumeBecomeACaseWhoseExercisesRun",
         "makes a volume of labels",
@@ -164,7 +169,12 @@ FORMS = (
         r"\1 --no-rehearse --vertices 700",
         "a coarser wall, without operating in exercise 2, which MadeCase and RealCase do",
     ),
-    Shorter(r"^(\./insula case wall .*) --vertices 1200 ", r"\1 --vertices 800 ", "a little finer than that"),
+    Shorter(
+        r"^(\./insula case wall .*) --vertices 1200 --on$",
+        r"\1 --vertices 800",
+        "a little finer; `intake --on` runs the rest",
+    ),
+    Shorter(r"^(\./insula case wall .* --neck.*) --on$", r"\1", "that stage alone; `intake --on` runs the rest"),
     Shorter(r"--motion none --duration 10\b", "--motion none --duration 1", "a part of it"),
     Shorter(
         r"^(\./insula run scenes/(training|cases/my_case)/.*--report report)$",

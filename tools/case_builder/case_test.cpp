@@ -161,8 +161,8 @@ TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
   const std::string input = (folder.path() / "vessel.stl").string();
   std::string said;
   for (const char* out : {"a", "b"})
-    ASSERT_EQ(command({"new", "tube", input, "--out", (folder.path() / out).string(), "--vertices", "900", "--site",
-                       "basilar tip", "--difficulty", "4"},
+    ASSERT_EQ(command({"new", "tube", input, "--out", (folder.path() / out).string(), "--vertices", "900", "--plays",
+                       "4", "--site", "basilar tip", "--difficulty", "4"},
                       &said),
               0)
         << said;

@@ -19,8 +19,6 @@
 namespace insula::case_builder {
 namespace {
 
-// The search ends after so many plays.
-constexpr int most_plays = 16;
 // A released clip that leaves much of the sac open after this time does not improve any more, s.
 constexpr double hopeless_after_s = 1.5;
 
@@ -109,8 +107,11 @@ std::vector<BladePlacement> corrections(const BladePlacement& at, const Clipping
 /// The best of the placements that have been played. Two are played at a time.
 class ClipSearch {
  public:
-  ClipSearch(const fs::path& scene, const artery::Vessel& at_rest, Progress& progress)
-      : trials_{ClippingTrial(scene), ClippingTrial(scene)}, neck_(trials_[0].neck(at_rest)), progress_(progress) {}
+  ClipSearch(const fs::path& scene, const artery::Vessel& at_rest, int most_plays, Progress& progress)
+      : trials_{ClippingTrial(scene), ClippingTrial(scene)},
+        neck_(trials_[0].neck(at_rest)),
+        most_plays_(most_plays),
+        progress_(progress) {}
 
   /// Plays the plans that have not been played, two by two. Ends with the first pair that has a sound one, or if
   /// `all` is false a better one than the best. Returns whether there was a better one.
@@ -121,7 +122,7 @@ class ClipSearch {
                          [&](const ClipPlan& k) { return k.clip.name == p.clip.name && k.at == p.at; });
     });
     bool better = false;
-    for (std::size_t k = 0; k < plans.size() && best_.plays < most_plays; k += trials_.size()) {
+    for (std::size_t k = 0; k < plans.size() && best_.plays < most_plays_; k += trials_.size()) {
       std::vector<std::future<ClippingOutcome>> outcomes;
       for (std::size_t i = 0; i < trials_.size() && k + i < plans.size(); ++i)
         outcomes.push_back(
@@ -140,7 +141,7 @@ class ClipSearch {
     }
     if (!play(std::move(near), false)) fineness_ *= 0.5;
   }
-  bool goes_on() const { return !best_.outcome.sound() && best_.plays < most_plays && fineness_ > finest; }
+  bool goes_on() const { return !best_.outcome.sound() && best_.plays < most_plays_ && fineness_ > finest; }
   const RehearsedClip& best() const { return best_; }
 
  private:
@@ -150,12 +151,13 @@ class ClipSearch {
     known_.push_back(plan);
     const bool better = best_.plays++ == 0 || outcome.cost() < best_.outcome.cost();
     if (better) best_.plan = plan, best_.outcome = outcome;
-    progress_.share(double(best_.plays) / most_plays);
+    progress_.share(double(best_.plays) / most_plays_);
     return better;
   }
 
   std::array<ClippingTrial, 2> trials_;
   artery::Neck neck_;
+  int most_plays_;
   Progress& progress_;
   std::vector<ClipPlan> known_;  ///< have been played
   double fineness_ = 1;
@@ -197,9 +199,9 @@ std::vector<ClipPlan> distinct_plans(const std::vector<ClipPlan>& ranked, std::s
 }
 
 RehearsedClip rehearse_clipping(const fs::path& scene, const fs::path& motion, const artery::Vessel& at_rest,
-                                const std::vector<ClipPlan>& tried, bool correct, Progress& progress) {
+                                const std::vector<ClipPlan>& tried, bool correct, int most_plays, Progress& progress) {
   write_text(motion, clipping_motion(tried.front()));  // the scene names it
-  ClipSearch search(scene, at_rest, progress);
+  ClipSearch search(scene, at_rest, most_plays, progress);
   search.play(tried, true);
   while (correct && search.goes_on()) search.correct();
   return search.best();

@@ -44,9 +44,10 @@ std::vector<ClipPlan> distinct_plans(const std::vector<ClipPlan>& ranked, std::s
 
 /// Plays the written exercise with the clips of `tried`, whose first motion is the file `motion`. The plans' blades are
 /// placed at the neck as it is under pressure, between the lobes. correct: placements near the best plan are tried too.
+/// The search ends after `most_plays`.
 /// The same case gives the same bits. Throws InputError if the scene does not load.
 RehearsedClip rehearse_clipping(const fs::path& scene, const fs::path& motion, const artery::Vessel& at_rest,
-                                const std::vector<ClipPlan>& tried, bool correct, Progress& progress);
+                                const std::vector<ClipPlan>& tried, bool correct, int most_plays, Progress& progress);
 
 /// What is wrong with the played plan; a fact if nothing is.
 std::vector<Note> notes_of(const RehearsedClip& clipped);

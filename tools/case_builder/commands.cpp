@@ -178,6 +178,9 @@ void scene_options(CLI::App* app, Options& o) {
                    {.bare = "mm", .min = "-10 mm", .max = "10 mm", .doc = "of the blades over the neck's plane"});
   quantity<Length>(app, "--slide", [&o](double mm) { o.slide = mm; },
                    {.bare = "mm", .min = "-15 mm", .max = "15 mm", .doc = "of the blades' middle beyond the neck's"});
+  app->add_option("--plays", o.plays,
+                  "placements of the clip that are played at most, until one succeeds (default: 16)")
+      ->check(CLI::Range(1, 100));
   app->add_flag("--rehearse,!--no-rehearse", o.rehearse,
                 "play the exercises until scripted hands succeed (default); else exercise 2 has none, and the clip "
                 "lies where its geometry says, which is quicker");

@@ -57,6 +57,7 @@ Json to_json(const Options& o) {
   put(j, "lift", o.lift);
   put(j, "slide", o.slide);
   put(j, "turn", o.turn);
+  j["plays"] = o.plays;
   j["rehearse"] = o.rehearse;
   return j;
 }
@@ -96,6 +97,7 @@ Options options_from_json(const Json& j) {
     take(j, "lift", o.lift);
     take(j, "slide", o.slide);
     take(j, "turn", o.turn);
+    take(j, "plays", o.plays);
     take(j, "rehearse", o.rehearse);
   } catch (const nlohmann::json::exception& e) {
     throw InputError(std::string("case.json: an option has the wrong kind of value: ") + e.what());

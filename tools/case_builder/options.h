@@ -53,6 +53,7 @@ struct Options {
   int difficulty = 0;                       ///< 1 to 5; 0: not said
   std::string clip;                         ///< of meshes/clips; empty: chosen for the neck
   std::optional<double> lift, slide, turn;  ///< of the clip's blades at the neck, mm, mm, degrees; none: chosen
+  int plays = 16;                           ///< placements of the clip that are played, at most
   bool rehearse = true;                     ///< the exercises are played, to find scripted hands that succeed
 };
 

@@ -66,7 +66,7 @@ RehearsedClip rehearsed_clip(SceneFacts f, const CaseFolder& folder, const fs::p
   f.clips = on_tray(names);
   f.assets = link_assets(folder, project, f.clips);
   write_clipping(f, folder);
-  return rehearse_clipping(exercise_files(folder)[2], folder.path / "3_clipping_steady.csv", v, tried, !fixed,
+  return rehearse_clipping(exercise_files(folder)[2], folder.path / "3_clipping_steady.csv", v, tried, !fixed, o.plays,
                            progress);
 }
 
