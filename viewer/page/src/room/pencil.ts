@@ -122,8 +122,8 @@ export class Pencil {
   }
 
   /**
-   * Asks for the depth under the pen. The pointer is sent at the depth that is known, and once more when that of its own
-   * place is. While a stroke is drawn, nothing is asked.
+   * Asks for the depth under the pen. The pointer is sent at the depth that is known, and once more when that of its
+   * own place is. While a stroke is drawn, nothing is asked.
    */
   private follow(): void {
     const { at } = this;
