@@ -109,11 +109,11 @@ function play(scene, lcm, state, sockets, sceneInfo) {
     if (!state.held[0]) state.lastTool = [...f.tool[0].p_m];
     const { session, paused } = state;
     Object.assign(f, { session, paused, sequence: state.sequence++, time_us: BigInt(Math.round(now * 1000)) });
-    broadcast('RENDER_FRAME', lcm.render_frame_t.encode(f));
+    if (!state.silent) broadcast('RENDER_FRAME', lcm.render_frame_t.encode(f));
     const metrics = { ...lcm.metrics_t.make(), session, time_us: f.time_us, sim_time_s: state.time };
     metrics.at_end = state.outcome !== '';
     metrics.json = JSON.stringify(theatre.metrics());
-    broadcast('METRICS', lcm.metrics_t.encode(metrics));
+    if (!state.silent) broadcast('METRICS', lcm.metrics_t.encode(metrics));
     broadcast('DEVICE_STATE', deviceState(lcm, f));
     sinceStatus += dt;
     if (sinceStatus < 1) return;
@@ -147,6 +147,7 @@ export async function startMock({
     commands: [],
     inputs: 0,
     malformed: false,
+    silent: false,
     mode,
     outcome: '',
     report: '',

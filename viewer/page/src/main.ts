@@ -52,8 +52,7 @@ scene.add(highlight.root, guiding.root);
 const playback = new Playback();
 const reading = new Reading();
 let world: World | null = null;
-let info: SceneInfo | null = null;
-let haptic: HapticStatus | null = null;
+let [info, haptic]: [SceneInfo | null, HapticStatus | null] = [null, null];
 /** When each stream was last heard. */
 const heard = { haptic: 0, info: 0, frame: -1e9 };
 const slowAdvice = softwareAdvice(stage.renderer.getContext());
@@ -227,6 +226,7 @@ async function follow(m: SceneInfo): Promise<void> {
     reading.begin(bundle);
     sound.begin(bundle);
     hud.showScene(bundle);
+    room.showScene();
     status.session = session;
     loadError = status.error = '';
   } catch (e) {

@@ -37,6 +37,10 @@ describe('a hand of the haptic server', () => {
     expect(link.servo(200)!.ticks_per_s).toBe(997);
     expect(link.hands(2200)).toBeNull();
     expect(link.servo(2200)).toBeNull();
+    link.close();
+    link.receive(pack('DEVICE_STATE', message), 3000);
+    expect(link.hands(3000)).toHaveLength(1);
+    expect(link.servo(3000), 'of a former haptic server').toBeNull();
   });
 });
 

@@ -2,12 +2,10 @@
 // Whether everybody can read the pages: axe finds nothing against WCAG 2 A and AA, contrast included.
 // Exit status 77: no browser, skipped.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { axeFinds } from './axe.mjs';
 import { check, launch, patience } from './browser.mjs';
 import { answerStart, openRecordings, openSession, openStart, startPlaces } from './places.mjs';
 
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const browser = await launch();
 const mock = await startPlaces();
 const waiting = await startPlaces('waiting');
@@ -19,15 +17,7 @@ const broken = [];
 
 /** Nothing of WCAG 2 A and AA is broken. */
 async function accessible(page, where) {
-  await page.evaluate(axe);
-  const found = await page.evaluate(async () => {
-    const tags = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa'];
-    const { violations } = await window.axe.run(document, { runOnly: { type: 'tag', values: tags } });
-    return violations.map(
-      (v) =>
-        `${v.id}: ${v.help}\n${v.nodes.map((n) => `  ${n.html.slice(0, 160)} ${n.any[0]?.message ?? ''}`).join('\n')}`,
-    );
-  });
+  const found = await axeFinds(page);
   for (const what of found) broken.push(`${where}: ${what}`);
   if (found.length > 0) console.log(`bad ${where}: ${found.join('\n')}`);
   else check(`${where}: axe finds nothing against WCAG 2 A and AA`);

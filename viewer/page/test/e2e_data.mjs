@@ -1,10 +1,45 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Data of a plugin that the page has never heard of: its polyline is in the picture, its channel is a curve and in
 // the list of the instructor's page; one drawable of each kind is drawn; malformed numbers are said, and nothing else
-// breaks.
+// breaks. Then another scene, of which nothing of the former one is left.
 import assert from 'node:assert/strict';
 import { startMock } from '../scripts/mock-server.mjs';
 import { check, launch, look, patience } from './browser.mjs';
+
+/** What the panels say of tools: names in the hands, trays, commands, curves and metrics. */
+const offered = (page) =>
+  page.evaluate(() => {
+    const texts = (selector) => [...document.querySelectorAll(selector)].map((e) => e.textContent);
+    return {
+      hands: texts('.hand .tag'),
+      forces: texts('.hand .force'),
+      trays: [...document.querySelectorAll('.tray button')].map((b) => b.dataset.tool),
+      curves: [...document.querySelectorAll('[data-curve]')].map((e) => e.dataset.curve),
+      metrics: document.querySelectorAll('tr[data-metric]').length,
+    };
+  });
+
+/** The engine goes on with a scene of which nothing moves yet and whose left hand is empty. */
+async function anotherScene(page) {
+  await page.evaluate(() => (document.querySelector('.metrics').open = true));
+  await page.waitForFunction(() => document.querySelector('tr[data-metric]'), null, patience);
+  const before = await offered(page);
+  assert.ok(before.trays.length > 1 && before.curves.length > 0 && before.hands.every((h) => h !== ''));
+  await page.route('**/scene.json', async (route) => {
+    const json = await (await route.fetch()).json();
+    const hands = json.hands.filter((h) => h.hand !== 'left').map((h) => ({ ...h, tools: h.tools.slice(0, 1) }));
+    await route.fulfill({ json: { ...json, hands, channels: [] } });
+  });
+  mock.state.silent = true;
+  mock.state.session += 1000n;
+  const session = mock.state.session.toString();
+  await page.waitForFunction((s) => window.__insula.session === s, session, patience);
+  const after = await offered(page);
+  assert.deepEqual(after, { hands: ['', ''], forces: ['–', '–'], trays: [], curves: [], metrics: 0 });
+  mock.state.silent = false;
+  await page.waitForFunction(() => document.querySelectorAll('.hand .tag')[1].textContent !== '', null, patience);
+  check('another scene leaves nothing of the tools, curves and metrics of the former one');
+}
 
 const mock = await startMock({ port: 0, startS: 3, samples: true });
 const browser = await launch();
@@ -63,6 +98,8 @@ try {
   const again = await look(page, field);
   assert.ok(again.green > 0.5 * seen.green, `greenish ${again.green}`);
   check('malformed numbers are said and hide their drawable alone; sound ones bring it back');
+
+  await anotherScene(page);
   assert.deepEqual(errors, []);
   check('no errors in the console');
 } finally {

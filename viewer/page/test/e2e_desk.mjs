@@ -59,6 +59,9 @@ async function makeAll(page) {
   await dialog(page)
     .getByText(/Observers: \d{6}$/)
     .waitFor(patience);
+  await dialog(page)
+    .getByText(/until this program ends/)
+    .waitFor(patience);
   await press(page, 'Make a key');
   await press(page, 'Show the key');
   const key = await dialog(page).locator('code').innerText();

@@ -96,6 +96,8 @@ async function session(page, language) {
   await page.waitForFunction(() => document.querySelector('.dialog.summary')?.checkVisibility(), null, patience);
   await drawing(page, false);
   await lookAt(page, language, 'summary');
+  await page.keyboard.press('Escape');
+  await lookAt(page, language, 'field after the end');
 }
 
 async function speak(language) {

@@ -178,23 +178,27 @@ try {
   );
   report('pointing', pointing, 150);
   await button('Draw');
-  const drawing = await delays(
+  const strokeShown = async (acted) => {
+    const found = await trainee.waitForFunction(
+      (since) => window.__insula.stroke_ms > since && window.__insula.stroke_ms,
+      acted,
+      { ...patience, polling: 10 },
+    );
+    return found.jsonValue();
+  };
+  const beginning = await delays(
     instructor,
     async (k) => {
+      await instructor.mouse.up();
       await instructor.mouse.move(420 + 10 * k, 250);
       await instructor.mouse.down();
-      await instructor.mouse.up();
     },
-    async (acted) => {
-      const found = await trainee.waitForFunction(
-        (since) => window.__insula.stroke_ms > since && window.__insula.stroke_ms,
-        acted,
-        { ...patience, polling: 10 },
-      );
-      return found.jsonValue();
-    },
+    strokeShown,
   );
-  report('drawing', drawing); // a stroke may wait for its depth
+  report('beginning a stroke', beginning, 150);
+  const drawing = await delays(instructor, (k) => instructor.mouse.move(520 + 10 * k, 260), strokeShown);
+  await instructor.mouse.up();
+  report('drawing', drawing, 150);
   assert.ok((await trainee.evaluate(() => window.__insula.strokes)) > 0);
   check('pointer and strokes go from page to page');
   console.log(`${((performance.now() - began) / 1000).toFixed(0)} s`);

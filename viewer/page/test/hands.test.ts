@@ -214,7 +214,7 @@ describe('the guide', () => {
 describe('words', () => {
   it('stand beside colours', () => {
     expect([1, 0, -1].map((good) => verdict({ good }))).toEqual(['✓ good', '', '✗ not good']);
-    expect(timesText({ count: 3, timesS: [1.5, 61] })).toBe('0:01.5, 1:01.0 and 1 more');
+    expect(timesText({ count: 3, timesS: [1.5, 61] })).toBe('0:01.5, 1:01.0, 1 more');
     expect(timesText({ count: 2, timesS: [] })).toBe('');
   });
   it('name software rendering', () => {

@@ -13,6 +13,9 @@ export function layoutFaults() {
   const root = document.scrollingElement;
   if (root.scrollWidth > innerWidth + 1) faults.push(`the page is ${root.scrollWidth} wide, the window ${innerWidth}`);
   const open = [...document.querySelectorAll('[role=dialog][aria-modal], dialog[open]')].filter(shown).pop();
+  const whole = open?.getBoundingClientRect();
+  if (whole && (whole.top < -1 || whole.left < -1 || whole.bottom > innerHeight + 1 || whole.right > innerWidth + 1))
+    faults.push(`${name(open)}: the window cuts it`);
   const readerOnly = (e) => e.clientWidth <= 1 || e.clientHeight <= 1;
   for (const e of (open ?? document).querySelectorAll('*')) {
     if (!shown(e) || e.closest('svg, canvas')) continue;
@@ -50,9 +53,15 @@ export function layoutFaults() {
   return [...new Set(faults)];
 }
 
-/** Runs in the page: pairs of panels over the field that cover one another. A dialog may lie over panels. */
+/**
+ * Runs in the page: pairs of panels and messages over the field that cover one another. A dialog may lie over panels,
+ * and nothing over a dialog.
+ */
 export function panelsOverlap() {
-  const panels = [...document.querySelectorAll('.panel:not(.dialog)')].filter((e) => e.checkVisibility());
+  const shown = (e) => e.checkVisibility({ visibilityProperty: true });
+  const dialog = [...document.querySelectorAll('.dialog')].find(shown);
+  const panels = [...document.querySelectorAll('.panel:not(.dialog), .message.on')].filter(shown);
+  if (dialog) panels.splice(0, panels.length, dialog, ...panels.filter((e) => e.matches('.message')));
   const faults = [];
   for (const [k, a] of panels.entries())
     for (const b of panels.slice(k + 1)) {

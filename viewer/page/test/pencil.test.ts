@@ -105,6 +105,19 @@ describe('a stroke', () => {
     expect(sent).toHaveLength(2);
   });
 
+  it('is sent as it is drawn when the pen came over the picture, and asks for nothing', async () => {
+    const { pen, asked, sent, answer } = await drawing();
+    pen('pointerrawupdate', 50, 50);
+    expect(sent, 'a pen in the air draws nothing').toEqual([]);
+    await answer(-3);
+    pen('pointerdown', 52, 50);
+    expect(sent).toMatchObject([{ kind: 'stroke', points: [[-2.88, 0, -3]] }]);
+    await pass(sendEveryMs);
+    pen('pointerrawupdate', 150, 50);
+    expect(sent[1]).toMatchObject({ kind: 'stroke', points: [[3, 0, -3]] });
+    expect(asked).toHaveLength(0);
+  });
+
   it('keeps its own depth when the next one begins early', async () => {
     const { pen, sent, answer } = await drawing();
     pen('pointerdown', 50, 50);

@@ -7,6 +7,7 @@ import { fileURLToPath } from 'node:url';
 
 export const root = fileURLToPath(new URL('../../..', import.meta.url));
 const folder = join(root, 'build/release/bin');
+export const gatewayProgram = join(folder, 'gateway');
 
 /** A bus of this test alone. */
 export const ownBus = (first = 0) => `udpm://239.255.76.67:${20000 + ((process.pid + first) % 20000)}?ttl=0`;
@@ -16,7 +17,7 @@ export class Programs {
   #ended = false;
 
   constructor() {
-    if (existsSync(join(folder, 'gateway'))) return;
+    if (existsSync(gatewayProgram)) return;
     console.log(`skipped: no programs in ${folder}`);
     process.exit(77);
   }

@@ -35,6 +35,11 @@ export class TimeChart {
   }
 
   /** One sample; time may jump back (a reset): then the curves begin anew. null: not known, a gap. */
+  clear(): void {
+    this.samples.length = 0;
+    this.draw();
+  }
+
   add(timeS: number, values: (number | null)[]): void {
     const last = this.samples[this.samples.length - 1];
     if (last && timeS < last.t) this.samples.length = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One hand: its force with a word for how much that is, whether the mouse drives it, its buttons, and its tools.
+import type { HandData } from '../bundle_types';
 import { el, setText } from './dom';
 import { distanceText } from '../depth_cue';
 import type { Button } from '../hand_pose';
@@ -96,6 +97,14 @@ export class HandPanel {
     held.hidden = !mayDrive;
     const force = el('span', { class: 'force-text' }, this.level, this.number);
     this.root.append(head, el('div', { class: 'bar' }, this.fill), force, held, this.depth, this.reach, this.tray.root);
+  }
+
+  /** The tools of another scene. Until its first frame nothing is known of the hand. */
+  showScene(hand: HandData | null): void {
+    const off = { on: false, latched: false };
+    this.tray.showScene(hand);
+    const free = { active: this.root.classList.contains('active'), taken: false, resting: false, buttons: [off, off] };
+    this.show({ force: null, kind: '', depth: '', reach: '', ...free });
   }
 
   show({ force, kind, depth, reach, active, taken, resting, buttons }: HandView): void {

@@ -119,13 +119,13 @@ export class Hud {
       { name: 'right', text: role === 'instructor' ? text('Commands') : text('Hands and tools') },
     ]);
     const notices = el('div', { class: 'notices' }, this.notice.root, this.problems.root);
-    this.under.append(this.guide.root, ...(mayDrive ? [makeTouch(actions)] : []), this.tabs.root);
+    this.under.append(this.message, this.guide.root, ...(mayDrive ? [makeTouch(actions)] : []), this.tabs.root);
     root.append(
       left,
       right,
       this.under,
       el('footer', {}, warning, this.haptic.root, this.machine, this.link),
-      ...[this.message, this.banner, this.toasts.root, notices, ...this.session.roots, this.help.root],
+      ...[this.banner, this.toasts.root, notices, ...this.session.roots, this.help.root],
     );
     returnFocusToField(root, field);
   }
@@ -160,7 +160,9 @@ export class Hud {
     this.vitals.showScene(bundle);
     this.toolList.showScene(bundle);
     this.instructor?.showScene(bundle);
-    this.hands.forEach((h, k) => h.tray.showScene(bundle.hands.find((x) => x.hand === side(k)) ?? null));
+    this.message.classList.remove('on');
+    this.guide.show(null, false);
+    this.hands.forEach((h, k) => h.showScene(bundle.hands.find((x) => x.hand === side(k)) ?? null));
     const shines = bundle.bodies.some((b) => Object.keys(b.channelOfRegion).length > 0);
     this.view.showGlow(shines, bundle.inventory || this.role === 'observer' ? [] : glowCommands(bundle));
   }

@@ -74,6 +74,9 @@ export class InstructorPanel {
       ]),
     );
     this.log.replaceChildren();
+    this.causes.show([]);
+    this.forces.clear();
+    this.metrics.clear();
   }
 
   /** Five times a second. */

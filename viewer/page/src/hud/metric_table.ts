@@ -57,6 +57,13 @@ export class MetricTable {
     );
   }
 
+  /** Another scene has other metrics. */
+  clear(): void {
+    this.rows.clear();
+    this.body.replaceChildren();
+    this.show([]);
+  }
+
   /** Costs nothing while it is closed. */
   show(metrics: readonly MetricView[]): void {
     this.root.hidden = metrics.length === 0;

@@ -8,6 +8,7 @@ import type { MetricView } from './metrics';
 import { valueText } from './progress';
 import type { FaultView, HudState, MeasureView, TimerView } from './state';
 import { clockText } from './state';
+import { listed } from '../languages/lists';
 import { text } from '../languages/text';
 
 const yes = '✓';
@@ -15,9 +16,9 @@ const no = '✗';
 
 /** "0:12.3, 0:40.1 and 3 more". */
 export function timesText(fault: Pick<FaultView, 'count' | 'timesS'>): string {
-  const shown = fault.timesS.map(clockText).join(', ');
-  const more = fault.count - fault.timesS.length;
-  return more > 0 && shown !== '' ? text('{times} and {more} more', { times: shown, more }) : shown;
+  const times = fault.timesS.map(clockText);
+  const more = fault.count - times.length;
+  return more > 0 && times.length > 0 ? listed([...times, text('{more} more', { more })]) : listed(times);
 }
 
 export function verdict(m: Pick<MeasureView, 'good'>): string {

@@ -99,15 +99,18 @@ export class AccessDialog {
   }
 
   private pins({ pin, observerPin }: AccessView): HTMLElement[] {
+    const lasting = el(
+      'p',
+      { class: 'hint lasting' },
+      text('PINs are good until this program ends. Its next start needs new ones.'),
+    );
     if (pin !== '')
       return [
         el('p', {}, text('Instructors: {pin}', { pin })),
         el('p', {}, observerPin === '' ? '' : text('Observers: {pin}', { pin: observerPin })),
+        lasting,
       ];
-    return [
-      el('p', { class: 'hint' }, text('There are none. They are good until this program ends.')),
-      this.maker(text('Make PINs'), 'pins'),
-    ];
+    return [el('p', { class: 'hint' }, text('There are none.')), lasting, this.maker(text('Make PINs'), 'pins')];
   }
 
   private key({ key, keyKept }: AccessView): HTMLElement[] {

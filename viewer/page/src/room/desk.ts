@@ -69,6 +69,11 @@ export class RoomDesk {
     if (count > 0 && this.role === 'trainee') this.talk.show();
   }
 
+  /** Strokes lie in the field of the scene that they were drawn in. */
+  showScene(): void {
+    this.take({ kind: 'clear' });
+  }
+
   private take(m: Drawing): void {
     this.strokes.take(m, performance.now());
     this.show();

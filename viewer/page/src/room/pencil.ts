@@ -7,8 +7,10 @@ import { type Drawing, mostPoints, type Point } from './messages';
 export type PencilMode = 'off' | 'draw' | 'point';
 
 export const sendEveryMs = 33;
-/** A stroke waits so long for its depth. Then it lies at the last one that was known. */
-export const depthWaitMs = 50;
+/** A stroke that begins where no depth is known waits so long for it. Then it lies at the last one that was known. */
+export const depthWaitMs = 35;
+/** The depth is known about the place where it was read back, pixels. */
+export const nearPx = 12;
 
 export interface Sight {
   camera: THREE.PerspectiveCamera;
@@ -25,8 +27,10 @@ export class Pencil {
   private readonly caster = new THREE.Raycaster();
   /** What lay under the pen when that was last read back. */
   private under: THREE.Vector3 | null = null;
+  /** Where the pen was then. */
+  private underAt: At | null = null;
   private looking = false;
-  /** Where the pointer is, and whether that is still to be sent. */
+  /** Where the pen is over the picture, and whether the pointer is still to be sent. */
   private at: At | null = null;
   private unsent = false;
   /** Of the stroke: what is to be sent, and the plane that it lies in, once its depth is known. */
@@ -69,12 +73,16 @@ export class Pencil {
     this.move(e);
   }
 
-  /** In the plane across the view at the depth of what is under the pen, so that a stroke stays in one depth. */
+  /**
+   * In the plane across the view at the depth of what is under the pen, so that a stroke stays in one depth. A pen that
+   * came over the picture has asked for it on the way.
+   */
   private beginStroke(at: At): void {
     this.settle(this.id);
     this.down = true;
     this.plane = null;
     const id = (this.id = Math.floor(Math.random() * 2 ** 40));
+    if (this.underAt && Math.hypot(at.x - this.underAt.x, at.y - this.underAt.y) <= nearPx) return this.settle(id);
     setTimeout(() => this.settle(id), depthWaitMs);
     void this.look(at).then(() => this.settle(id));
   }
@@ -94,30 +102,38 @@ export class Pencil {
   private async look({ x, y }: At): Promise<void> {
     this.looking = true;
     this.under = await this.sight.pick(x, y);
+    this.underAt = { x, y };
     this.looking = false;
   }
 
   private move(e: PointerEvent): void {
     const at = { x: e.offsetX, y: e.offsetY };
-    if (this.mode === 'point') {
-      this.at = at;
-      this.unsent = true;
-      this.sendSoon();
-      this.follow();
-    } else if (this.down) {
+    if (this.mode === 'off') return;
+    if (this.down) {
       this.waiting.push(this.ray(at));
+      return this.sendSoon();
+    }
+    this.at = at;
+    if (this.mode === 'point') {
+      this.unsent = true;
       this.sendSoon();
     }
+    this.follow();
   }
 
-  /** The pointer is sent at the depth that is known, and once more when the depth of its own place is. */
+  /**
+   * Asks for the depth under the pen. The pointer is sent at the depth that is known, and once more when that of its
+   * own place is. While a stroke is drawn, nothing is asked.
+   */
   private follow(): void {
     const { at } = this;
-    if (this.looking || !at) return;
+    if (this.looking || this.down || !at) return;
     void this.look(at).then(() => {
       if (!this.at) return;
-      this.unsent = true;
-      this.sendSoon();
+      if (this.mode === 'point') {
+        this.unsent = true;
+        this.sendSoon();
+      }
       if (this.at !== at) this.follow();
     });
   }

@@ -27,6 +27,7 @@ export class DeviceLink {
     if (this.socket) this.socket.onmessage = null;
     this.socket?.close();
     this.socket = null;
+    this.devices = this.status = null;
     this.heardMs = -Infinity;
   }
 

@@ -110,6 +110,8 @@ export class DevicePanel {
     const hands = this.link.hands(nowMs);
     this.hands.forEach((row, k) => {
       const hand = hands?.find((h) => h.hand === k);
+      // Another exercise has a haptic server of its own, whose hands are elsewhere.
+      if (!hand) this.from[k] = null;
       if (!hand) return row.show({ says: text('no haptic server is heard'), bars: [], lamps: [] });
       row.show(handLive(hand, (this.from[k] ??= hand.p_m)));
     });

@@ -80,7 +80,7 @@ async function hand(page) {
     for (let k = 0; k < 8; k++) await mouse.wheel(0, 100);
     await keyboard.up('Shift');
   });
-  const pressed = await changes(page, 0.002, 'a key', () => keyboard.press('ArrowDown', { delay: 400 }));
+  const pressed = await changes(page, 0.002, 'a key', () => keyboard.press('ArrowDown', { delay: 1000 }));
   await keyboard.press('g');
   await page.waitForFunction(() => !window.__insula.taken[1], null, patience);
   check(`drag, wheel and key move the hand (${dragged}, ${wheeled}, ${pressed} of the field), and a key gives it back`);

@@ -8,11 +8,18 @@ import { join } from 'node:path';
 import { check, patience } from '../browser.mjs';
 import { ownBus, Programs } from '../programs.mjs';
 
+export async function shot(page, name) {
+  const path = join(process.env.INSULA_SHOTS ?? '', `${name}.png`);
+  if (process.env.INSULA_SHOTS) await page.screenshot({ path, timeout: patience.timeout });
+}
+
 /** Nobody has used the programs of this place before. */
 export class FirstUse {
   folder = mkdtempSync(join(tmpdir(), 'insula_first_use_'));
   curriculum = join(this.folder, 'curricula/first_use.xml');
   programs = new Programs();
+  /** What is done at each stop of the way. */
+  visited = shot;
 
   constructor() {
     mkdirSync(join(this.folder, 'curricula'));
@@ -31,11 +38,6 @@ export class FirstUse {
     await this.programs.end();
     rmSync(this.folder, { recursive: true, force: true });
   }
-}
-
-async function shot(page, name) {
-  const path = join(process.env.INSULA_SHOTS ?? '', `${name}.png`);
-  if (process.env.INSULA_SHOTS) await page.screenshot({ path, timeout: patience.timeout });
 }
 
 const course = (page) => page.evaluate(async () => (await fetch('api/curriculum?person=P07')).json());
@@ -63,7 +65,7 @@ async function touchTheBall(page) {
   assert.ok(await over(), 'the exercise has ended');
 }
 
-async function follow(page, { address }) {
+async function follow(page, { address, visited }) {
   await page.goto(address);
   await page.waitForSelector('.card', patience);
   assert.equal(await page.locator('.course').isVisible(), false, 'a guest has no curriculum');
@@ -71,24 +73,24 @@ async function follow(page, { address }) {
   await page.keyboard.type('P07');
   await page.keyboard.press('Enter');
   await page.locator('#curriculum').selectOption('first_use', patience);
-  await shot(page, 'choose');
+  await visited(page, 'choose');
   await page.getByRole('button', { name: 'Follow it' }).click();
   await page.locator('.next .continue').waitFor(patience);
   assert.equal((await course(page)).next.task, 'practise');
   assert.equal(await page.locator('[data-module=last]').getAttribute('data-standing'), 'locked');
-  await shot(page, 'course');
+  await visited(page, 'course');
   check('somebody adds himself and follows a curriculum');
 }
 
 /** inExercise: what else is looked at in the first exercise. */
-async function practise(page, { address }, inExercise) {
+async function practise(page, { address, visited }, inExercise) {
   await page.locator('.next .continue').click();
   await page.waitForURL(/index\.html/, patience);
   await takeRightHand(page);
-  await shot(page, 'exercise');
+  await visited(page, 'exercise');
   await inExercise(page);
   await touchTheBall(page);
-  await shot(page, 'summary');
+  await visited(page, 'summary');
   await page.goto(address);
   await page.locator('[data-module=first][data-standing=passed]').waitFor(patience);
   const { next } = await course(page);
@@ -97,23 +99,23 @@ async function practise(page, { address }, inExercise) {
 }
 
 /** Returns the run that counts. */
-async function beTested(page, { address }) {
+async function beTested(page, { address, visited }) {
   await page.locator('.next .continue').click();
   await page.waitForURL(/index\.html/, patience);
   await touchTheBall(page);
   await page.goto(address);
   await page.getByText('You have passed this curriculum.').waitFor(patience);
-  await shot(page, 'passed');
+  await visited(page, 'passed');
   const run = (await course(page)).modules[1].tasks[0].runs.at(-1);
   assert.deepEqual([run.mode, run.state], ['test', 'done']);
   check('the last module is passed by hand, as a test');
   return run;
 }
 
-async function certificate(page, { programs, folder, curriculum }, run) {
+async function certificate(page, { programs, folder, curriculum, visited }, run) {
   await page.locator('.next .certificate').click();
   await page.locator('.sheet').waitFor(patience);
-  await shot(page, 'certificate');
+  await visited(page, 'certificate');
   const sheet = await page.locator('.sheet').innerText();
   for (const words of ['P07', 'First use', 'no licence to operate', run.uuid]) assert.ok(sheet.includes(words));
   const told = programs.insula(['people', 'certificate', 'P07', curriculum, '--data', folder]);
