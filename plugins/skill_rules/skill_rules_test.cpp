@@ -139,6 +139,19 @@ TEST_F(SkillRules, MarksShowWhoseTurnItIs) {
   EXPECT_EQ(marks("press", "reading"), 0);
 }
 
+TEST_F(SkillRules, PlacesAreOpenUntilTheirGoalIsReached) {
+  const auto style = [&](const DrawableBase& d) {
+    for (const Material& m : s->scene().materials())
+      if (m.name == d.spec().material) return m.style;
+    return std::string("none");
+  };
+  for (const char* goal : {"target", "press"})
+    for (const DrawableBase* d : s->scene().find(goal)->drawables())
+      if (const std::string name(d->spec().name); name == "waiting" || name == "left" || name == "right")
+        EXPECT_EQ(style(*d), "place") << goal << '.' << name;
+      else EXPECT_NE(style(*d), "place") << goal << '.' << name;
+}
+
 /// The example's clip is free. Its blades, 9 mm long, point down from z = 13 mm at y = 5 mm.
 TEST(ClipPlaced, CountsItsPlaceAndThatItIsSquare) {
   const auto outcome = [](const std::string& at, const std::string& axis) {

@@ -8,6 +8,7 @@ import { toolInHand, toolState } from './hand_tool';
 import { toolCommands } from './hud/commands';
 import type { GuideView } from './hud/guide_panel';
 import type { RenderFrame } from './lcm';
+import { StyledPlaces } from './styled_places';
 import { TargetGhost } from './target_ghost';
 import { listed } from './languages/lists';
 import { said } from './languages/said';
@@ -27,6 +28,8 @@ export interface GuidingInput {
   axes: Axes;
 }
 
+const sweepAcross = (): string => text('Sweep the edge across it');
+
 type TargetStatus = { at: number; of: number; distance_m: number; angle_rad: number } | null;
 
 export class Guiding {
@@ -37,6 +40,7 @@ export class Guiding {
   private readonly guide = new Guide();
   private readonly ghost = new TargetGhost();
   private readonly aims = new Aims();
+  private readonly undone = new StyledPlaces('place');
 
   constructor() {
     this.root.add(this.ghost.root, this.aims.root);
@@ -46,6 +50,7 @@ export class Guiding {
     this.guide.begin(bundle);
     this.ghost.begin(bundle);
     this.aims.begin(bundle);
+    this.undone.begin(bundle);
     this.view = null;
   }
 
@@ -77,6 +82,7 @@ export class Guiding {
     const tool = bundle.tools.find((t) => t.index === held.index);
     const id = tool?.id ?? '';
     const before = this.guide.target(hand)?.target;
+    this.guide.see(this.undone.in(frame));
     if (before?.tool === id && !toChoose(before, frame, bundle)) this.guide.follow(hand, p, q, buttons);
     if (tool?.cuts && this.guide.ended(hand)) {
       const status = this.leadOn(frame, held, p, q, axes);
@@ -85,7 +91,8 @@ export class Guiding {
     const next = this.guide.target(hand);
     if (!next) return null;
     const { target, at, of } = next;
-    const { nearM, nearRad } = target;
+    const { nearRad } = target;
+    const nearM = this.guide.nearM(hand);
     const offset = offsetOf(p, q, target, axes);
     this.view = { at, of, offset, nearM, nearRad, leftOver: 0, todo: '', waits: this.guide.waits(hand) };
     if (target.tool !== id) {
@@ -96,11 +103,17 @@ export class Guiding {
       const choice = toChoose(target, frame, bundle);
       this.view.todo = choice
         ? text('Choose from the list: {tool} (L)', { tool: said(choice.title) })
-        : buttonsToDo(target, buttons);
+        : buttonsToDo(target, buttons) || this.deedAt(hand, offset.distanceM < nearM, tool?.cuts ?? false);
       if (offset.distanceM > ghostFromM || offset.angleRad > ghostFromRad)
         this.ghost.show(frame, held, target.p, target.q);
     }
     return { at, of, distance_m: offset.distanceM, angle_rad: offset.angleRad };
+  }
+
+  /** What a hand is to do at the place that it has reached; '': nothing. */
+  private deedAt(hand: number, there: boolean, cuts: boolean): string {
+    if (!there || !this.guide.stays(hand)) return '';
+    return cuts ? sweepAcross() : text('Stay here until the goal is ticked');
   }
 
   /** After the example: to what it has left over, with the wrist as it is. null: nothing is left. */
@@ -117,7 +130,7 @@ export class Guiding {
     this.aims.show(places);
     const offset = offsetOf(p, q, { p: to, q }, axes);
     const near = offset.distanceM < sweepFromM;
-    const todo = near ? text('Sweep the edge across it') : '';
+    const todo = near ? sweepAcross() : '';
     const leftOver = places.length;
     this.view = { at: 0, of: 0, leftOver, offset, nearM: sweepFromM, nearRad: Math.PI, todo, waits: false };
     if (offset.distanceM > ghostFromM) this.ghost.show(frame, held, to, q);
