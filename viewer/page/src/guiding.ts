@@ -94,26 +94,23 @@ export class Guiding {
     const { nearRad } = target;
     const nearM = this.guide.nearM(hand);
     const offset = offsetOf(p, q, target, axes);
-    this.view = { at, of, offset, nearM, nearRad, leftOver: 0, todo: '', waits: this.guide.waits(hand) };
-    if (target.tool !== id) {
+    const takeUp = target.tool !== id;
+    this.view = { at, of, offset, nearM, nearRad, leftOver: 0, todo: '', takeUp, waits: this.guide.waits(hand) };
+    if (takeUp) {
       const wanted = bundle.tools.find((t) => t.id === target.tool);
-      this.view.todo = text('Take up: {tool}', { tool: said(wanted?.title ?? target.tool) });
+      this.view.todo = text('Take up: {tool} (T)', { tool: said(wanted?.title ?? target.tool) });
     } else {
       this.turn = { hand, q: target.q };
       const choice = toChoose(target, frame, bundle);
       this.view.todo = choice
         ? text('Choose from the list: {tool} (L)', { tool: said(choice.title) })
-        : buttonsToDo(target, buttons) || this.deedAt(hand, offset.distanceM < nearM, tool?.cuts ?? false);
+        : this.guide.stays(hand)
+          ? toCount(target, buttons, offset.distanceM < nearM, tool?.cuts ?? false)
+          : buttonsToDo(target, buttons);
       if (offset.distanceM > ghostFromM || offset.angleRad > ghostFromRad)
         this.ghost.show(frame, held, target.p, target.q);
     }
     return { at, of, distance_m: offset.distanceM, angle_rad: offset.angleRad };
-  }
-
-  /** What a hand is to do at the place that it has reached; '': nothing. */
-  private deedAt(hand: number, there: boolean, cuts: boolean): string {
-    if (!there || !this.guide.stays(hand)) return '';
-    return cuts ? sweepAcross() : text('Stay here until the goal is ticked');
   }
 
   /** After the example: to what it has left over, with the wrist as it is. null: nothing is left. */
@@ -129,10 +126,10 @@ export class Guiding {
     if (!to) return null;
     this.aims.show(places);
     const offset = offsetOf(p, q, { p: to, q }, axes);
-    const near = offset.distanceM < sweepFromM;
-    const todo = near ? sweepAcross() : '';
+    const todo = offset.distanceM < sweepFromM ? sweepAcross() : '';
     const leftOver = places.length;
-    this.view = { at: 0, of: 0, leftOver, offset, nearM: sweepFromM, nearRad: Math.PI, todo, waits: false };
+    const near = { nearM: sweepFromM, nearRad: Math.PI };
+    this.view = { at: 0, of: 0, leftOver, offset, ...near, todo, takeUp: false, waits: false };
     if (offset.distanceM > ghostFromM) this.ghost.show(frame, held, to, q);
     return { at: 0, of: 0, distance_m: offset.distanceM, angle_rad: 0 };
   }
@@ -164,4 +161,11 @@ export function buttonsToDo(target: Buttons, now: Buttons): string {
     return [b === 1 ? text('hold button 1 (Space)') : text('hold button 2 (B)')];
   });
   return parts.length === 0 ? '' : text('At the target: {what}', { what: listed(parts) });
+}
+
+/** What to do where something is still to be done. there: at the target. Buttons are let go when it has counted. */
+export function toCount(target: Buttons, now: Buttons, there: boolean, cuts: boolean): string {
+  const presses = { button1: target.button1 || now.button1, button2: target.button2 || now.button2 };
+  const deed = () => (cuts ? sweepAcross() : text('Stay here until the goal is ticked'));
+  return buttonsToDo(presses, now) || (there ? deed() : '');
 }

@@ -8,11 +8,11 @@ import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { argv } from 'node:process';
-import { check, launch, patience } from './browser.mjs';
+import { check, patience } from './browser.mjs';
 import { Person } from './human_hands.mjs';
 import { Practice } from './human_practice.mjs';
 import { ownBus, Programs, root } from './programs.mjs';
-import { launchUndrawn, openUndrawn } from './undrawn.mjs';
+import { drawn, launchUndrawn, openUndrawn } from './undrawn.mjs';
 
 const viewport = { width: 1280, height: 800 };
 const shots = process.env.INSULA_SHOTS;
@@ -28,10 +28,11 @@ const tasks = readdirSync(folder).filter(
 const longestMs = 400_000;
 
 async function openPage(browser, address) {
-  const page = shots ? await browser.newPage({ viewport }) : await openUndrawn(browser, viewport);
+  const page = await openUndrawn(browser, viewport);
   await page.goto(`${address}?quality=draft`);
   await page.waitForFunction(() => window.__insula?.ready, null, patience);
   for (const button of await page.locator('.toast button').all()) await button.click(patience);
+  await page.getByRole('button', { name: 'Not now' }).click(patience);
   return page;
 }
 
@@ -40,7 +41,8 @@ const shown = (view) => view.goals.map((g) => `${g.done ? 'reached' : 'not reach
 /** Practises until the exercise says that it is over; keeps pictures of begin, middle and end. */
 async function practise(page, name) {
   const keep = async (when) => {
-    if (shots) await page.screenshot({ path: join(shots, `${name}_${when}.png`), timeout: patience.timeout });
+    const path = join(shots ?? '', `${name}_${when}.png`);
+    if (shots) await drawn(page, () => page.screenshot({ path, timeout: patience.timeout }));
   };
   await keep('begin');
   const practice = new Practice(new Person(page, seed), () => true);
@@ -63,7 +65,7 @@ async function task(file) {
   const data = mkdtempSync(join(tmpdir(), 'insula_skills_'));
   const words = ['--no-record', '--no-report', '--motion', 'none', '--mode', 'practice', join(folder, file)];
   const { address } = await programs.play(data, words, ownBus(13000));
-  const browser = shots ? await launch() : await launchUndrawn();
+  const browser = await launchUndrawn();
   try {
     const page = await openPage(browser, address);
     const errors = [];

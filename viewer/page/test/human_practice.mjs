@@ -49,7 +49,13 @@ export class Practice {
     if (mine.done) return this.beginAgain(target, mine);
     const choice = /^Choose from the list: (.*) \(L\)$/.exec(view.todo)?.[1];
     if (choice) return this.choose(choice);
+    if (/^Take up: .* \(T\)$/.test(view.todo)) return this.takeUp();
     return this.goTo(target, view);
+  }
+
+  async takeUp() {
+    await this.page.keyboard.press('t');
+    return this.person.settled();
   }
 
   /** What the example has left over: goes there, and sweeps the edge across it; passes over what does not give way. */

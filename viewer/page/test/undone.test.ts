@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import { beforeEach, describe, expect, it } from 'vitest';
 import type { Bundle, GuidePose } from '../src/bundle_types';
 import { Guide } from '../src/guide';
+import { toCount } from '../src/guiding';
 import type { RenderFrame } from '../src/lcm';
 import { StyledPlaces } from '../src/styled_places';
 
@@ -69,6 +70,20 @@ describe('a target with a place where something is to be done', () => {
     right(at(0.01, 0, 0.01));
     guide.step(1, 1);
     expect(guide.target(1)!.at).toBe(2);
+  });
+});
+
+describe('what to do at such a target', () => {
+  const on = { button1: true, button2: false };
+  it('is to press what is to be pressed, then to stay, or to sweep an edge', () => {
+    expect(toCount(on, none, false, false)).toBe('At the target: hold button 1 (Space)');
+    expect(toCount(on, on, false, false)).toBe('');
+    expect(toCount(on, on, true, false)).toBe('Stay here until the goal is ticked');
+    expect(toCount(none, none, true, true)).toBe('Sweep the edge across it');
+  });
+  it('is to keep a button that the example lets go there', () => {
+    expect(toCount(none, on, false, false)).toBe('');
+    expect(toCount(none, on, true, false)).toBe('Stay here until the goal is ticked');
   });
 });
 
