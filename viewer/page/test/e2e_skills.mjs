@@ -7,7 +7,7 @@ import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { argv } from 'node:process';
+import { parseArgs } from 'node:util';
 import { check, patience } from './browser.mjs';
 import { Person } from './human_hands.mjs';
 import { Practice } from './human_practice.mjs';
@@ -17,10 +17,13 @@ import { drawn, launchUndrawn, openUndrawn } from './undrawn.mjs';
 const viewport = { width: 1280, height: 800 };
 const shots = process.env.INSULA_SHOTS;
 const folder = join(root, 'scenes/skills');
-const seedAt = argv.indexOf('--seed');
-const seed = seedAt < 0 ? 1 : Number(argv[seedAt + 1]);
-const asked = argv.slice(2).filter((word, k) => k + 2 < (seedAt < 0 ? Infinity : seedAt) && word !== '');
-const usual = ['1', '4', '5'];
+const { values, positionals: asked } = parseArgs({
+  allowPositionals: true,
+  options: { seed: { type: 'string', default: '1' } },
+});
+const seed = Number(values.seed);
+/** Those that take less than a minute; the others take two. */
+const usual = ['4', '5', '6'];
 const tasks = readdirSync(folder).filter(
   (f) => f.endsWith('.xml') && (asked.length > 0 ? asked : usual).some((name) => f.startsWith(name)),
 );
