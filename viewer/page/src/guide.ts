@@ -161,16 +161,10 @@ export class Guide {
 
   /** Whether the example moves the other hand before this one reaches its target. */
   waits(hand: number): boolean {
-    const other = this.dueS(1 - hand);
-    return other !== null && !this.ended(1 - hand) && other < (this.dueS(hand) ?? Infinity) - aheadS;
-  }
-
-  /** When the example is at a hand's next target, s; null: there is none. Nobody has to go to where it begins. */
-  private dueS(hand: number): number | null {
-    const list = this.targets[hand]!;
-    const at = this.at[hand]!;
-    const next = at === 0 && list.length > 1 && list[0]!.timeS <= 0 ? list[1] : list[at];
-    return next?.timeS ?? null;
+    const mine = this.target(hand);
+    const other = this.target(1 - hand);
+    if (!other || this.ended(1 - hand)) return false;
+    return !mine || other.target.timeS < mine.target.timeS - aheadS;
   }
 
   /** To another target, by hand. */

@@ -73,19 +73,6 @@ describe('a target with a place where something is to be done', () => {
   });
 });
 
-describe('a hand that the example leaves where it begins', () => {
-  it('keeps no other hand waiting', () => {
-    const when = (hand: 'left' | 'right', x: number, timeS: number) => ({ ...pose(hand, [x, 0, 0]), timeS });
-    const guide = new Guide();
-    const right = [when('right', 0, 0), when('right', 0.02, 2), when('right', 0, 6)];
-    guide.begin({ exercise: { guide: [when('left', 0, 0), when('left', 0, 8), ...right] } } as unknown as Bundle);
-    expect([guide.waits(0), guide.waits(1)]).toEqual([true, false]);
-    guide.follow(1, at(0), q, none);
-    guide.follow(1, at(0.02), q, none);
-    expect([guide.waits(0), guide.waits(1)]).toEqual([true, false]);
-  });
-});
-
 describe('what to do at such a target', () => {
   const on = { button1: true, button2: false };
   it('is to press what is to be pressed, then to stay, or to sweep an edge', () => {
