@@ -13,7 +13,7 @@ class MaterialElement final : public Component {
   Param<Choice> style{this,
                       {.name = "style",
                        .fallback = "solid",
-                       .choices = {"solid", "tissue", "wall", "fibre", "fluid", "glass", "sheet", "aim"},
+                       .choices = {"solid", "tissue", "wall", "fibre", "fluid", "glass", "sheet", "aim", "place"},
                        .doc = "way of drawing"}};
   Param<Vec<Scalar>> colour{
       this, {.name = "colour", .fallback = "0.75 0.75 0.78", .min = "0", .max = "1", .doc = "red, green and blue"}};

@@ -164,6 +164,12 @@ std::string title_of(const std::string& name) {
   return out;
 }
 
+/// It has an edge that the scene lets cut.
+bool cuts(const RigidBody& body) {
+  const auto* sharp = dynamic_cast<const Param<Choice>*>(body.find_param("sharp"));
+  return !body.tool().blade_edges.empty() && !(sharp && sharp->is("never"));
+}
+
 Json tool_json(const BundleWriter& writer, const RigidBody& body, std::size_t index) {
   const auto* instrument = dynamic_cast<const Instrument*>(&body);
   const auto* file = dynamic_cast<const Param<File>*>(body.find_param("model"));
@@ -174,7 +180,7 @@ Json tool_json(const BundleWriter& writer, const RigidBody& body, std::size_t in
               {"kind", body.element},
               {"hand", instrument ? instrument->hand() : "none"},
               {"title", title_of(model.name)},
-              {"cuts", !model.blade_edges.empty()}};
+              {"cuts", cuts(body)}};
   if (file && !file->empty() && writer.picture((*file)(), name + "_picture.svg"))
     out["picture"] = name + "_picture.svg";
   out["properties"] = Json::array();

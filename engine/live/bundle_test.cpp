@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/base/input_error.h"
@@ -105,6 +106,19 @@ TEST_F(BundleOfAScene, NamesWhatTheSceneHolds) {
   EXPECT_EQ(j.at("exercise").at("id"), "task");
   EXPECT_EQ(j.at("exercise").at("goals").at(0).at("text"), "Divide all");
   EXPECT_FALSE(std::filesystem::exists(dir_ / "scene.json.part"));
+}
+
+TEST_F(BundleOfAScene, AnEdgeThatIsMadeBluntCutsNothing) {
+  const std::string pose =
+      R"( hand="right" model="meshes/tool/probe.urdf" home="0 0 0 mm" shaft="0 0 1" flat="1 0 0"/>)";
+  simulation_ = test::load_text("<scene><dissector id=\"knife\"" + pose + "<dissector id=\"blunt\" sharp=\"never\"" +
+                                    pose + "<dissector id=\"button\" sharp=\"button\"" + pose + "</scene>",
+                                scene_.path() / "tools.xml");
+  ASSERT_TRUE(simulation_);
+  std::map<std::string, bool> cuts;
+  const Json j = written();
+  for (const Json& tool : j.at("tools")) cuts[tool.at("id")] = tool.at("cuts");
+  EXPECT_EQ(cuts, (std::map<std::string, bool>{{"blunt", false}, {"button", true}, {"knife", true}}));
 }
 
 TEST_F(BundleOfAScene, SkinsFollowTheNodes) {

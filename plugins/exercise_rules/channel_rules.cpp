@@ -85,6 +85,18 @@ class GoalChannel final : public ExerciseRule {
   Param<std::string> limit{this, {.name = "limit", .doc = "limit with a unit of the channel: \"0.2 N\""}};
   Param<Duration> hold{
       this, {.name = "hold", .fallback = "0 s", .min = "0 s", .max = "600 s", .doc = "how long it must stay so"}};
+  Param<Vec<Length>> at{this,
+                        {.name = "at",
+                         .fallback = "0 0 0 mm",
+                         .doc = "where it is done: the guide of a trainee who practises stays at its target there "
+                                "until the goal is reached; without it the guide goes on"}};
+
+  Points place{this,
+               {.name = "place",
+                .doc = "where it is to be done, until it is reached",
+                .material = "goal_place",
+                .value = "0",
+                .radius = "0.4 mm"}};
 
   void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
     goal_ = log.add_goal(id, text());
@@ -93,14 +105,24 @@ class GoalChannel final : public ExerciseRule {
   void observe(const StepReport& r, ExerciseLog& log) override {
     const bool good = watch_.beyond(watch_.value(r), comparison_of(comparison));
     held_ = good ? held_ + r.h : 0;
-    if (good && held_ >= hold() - 1e-9) log.goal(goal_, r.time);
+    if (!good || held_ < hold() - 1e-9) return;
+    reached_ = true;
+    log.goal(goal_, r.time);
   }
-  void reset() override { held_ = 0; }
+  void publish() override {
+    place.resize(at.given() && !reached_ ? 1 : 0);
+    if (place.count() > 0) place.set(0, at(), 0);
+  }
+  void reset() override {
+    held_ = 0;
+    reached_ = false;
+  }
 
  private:
   ChannelWatch watch_;
   int goal_ = 0;
   double held_ = 0;
+  bool reached_ = false;
 };
 
 class FaultChannel final : public ExerciseRule, public WatchesLimits {

@@ -51,6 +51,24 @@ TEST(ChannelRules, AGoalIsReachedAfterTheHold) {
   EXPECT_TRUE(b.log().goals()[0].done);
 }
 
+TEST(ChannelRules, TheGoalsPlaceIsMarkedUntilItIsReached) {
+  const auto marks = [](const Bench& b, const char* goal) {
+    return b.loaded.simulation->scene().find(goal)->drawables().front()->count();
+  };
+  Bench b(R"(<goal_channel id="pull" text="Pull" channel="g.tension" limit="0.2 N" at="1 2 3 mm"/>
+             <goal_channel id="anywhere" text="Pull" channel="g.tension" limit="0.2 N"/>)");
+  ASSERT_TRUE(b.gauge) << b.messages();
+  b.hold(0.1, 2);
+  EXPECT_EQ(marks(b, "pull"), 1);
+  EXPECT_EQ(marks(b, "anywhere"), 0);
+  b.hold(0.3, 2);
+  b.hold(0.1, 2);
+  EXPECT_EQ(marks(b, "pull"), 0) << "what is reached stays so";
+  b.loaded.simulation->reset();
+  b.hold(0.1, 1);
+  EXPECT_EQ(marks(b, "pull"), 1);
+}
+
 TEST(ChannelRules, AFaultCountsOnceUntilTheChannelIsBack) {
   Bench b(R"(<fault_channel id="tight" text="Too tight" channel="g.pull" limit="0.2 N" grace="30 ms"/>)");
   ASSERT_TRUE(b.gauge) << b.messages();

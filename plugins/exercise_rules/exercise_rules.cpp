@@ -298,6 +298,7 @@ class TimeLimit final : public ExerciseRule {
 INSULA_PLUGIN(exercise_rules) {
   using namespace insula;
   registry.add_material({"aim", "aim", {0.39, 1, 0.82, 0.6}, 0.5, 0, 0});
+  registry.add_material({"goal_place", "place", {0.39, 1, 0.82, 1}, 0.5, 0, 0});
   registry.add<GoalStrands>("goal_strands", Kind::exercise_rule, "reached when enough strands are severed");
   registry.add<GoalOpening>("goal_opening", Kind::exercise_rule, "reached when two surfaces are held apart");
   registry.add<FaultForce>("fault_force", Kind::exercise_rule, "counts too much force of a tool on a body");

@@ -79,7 +79,7 @@ void MarkedThreads::publish() {
 }  // namespace insula
 
 INSULA_PLUGIN(marked_threads) {
-  registry.add_material({"thread_mark", "solid", {0.10, 0.62, 0.86, 1}, 0.5, 0, 0});
+  registry.add_material({"thread_mark", "place", {0.10, 0.62, 0.86, 1}, 0.5, 0, 0});
   registry.add<insula::MarkedThreads>("marked_threads", insula::Kind::constraint,
                                       "threads for practice between two bodies, of which some are marked");
 }

@@ -27,6 +27,15 @@ class GoalTouch final : public SkillGoal {
                        .display = "mm",
                        .digits = 1}};
 
+  Channel<Scalar> unheld{this,
+                         {.name = "unheld",
+                          .doc = "1: the tip is at the target in its turn, but the other hand does not hold what it "
+                                 "should",
+                          .min = "0",
+                          .max = "1",
+                          .shown = Shown::none,
+                          .digits = 0}};
+
   Marks<Points> ball{this, "1 mm"};
 
   void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
@@ -38,10 +47,12 @@ class GoalTouch final : public SkillGoal {
   void publish() override {
     SkillGoal::publish();
     off.set(turn() ? now_ : std::nan(""));
+    unheld.set(turn() && now_ <= radius() && !held_ ? 1 : 0);
   }
   void reset() override {
     SkillGoal::reset();
     now_ = std::nan("");
+    held_ = true;
   }
 
  protected:
@@ -52,7 +63,8 @@ class GoalTouch final : public SkillGoal {
   }
   bool good(const StepReport& report) override {
     now_ = distance(report);
-    return now_ <= radius() && other_hand_holds(report);
+    held_ = other_hand_holds(report);
+    return now_ <= radius() && held_;
   }
   double deviation(const StepReport& report) const override { return distance(report); }
 
@@ -66,6 +78,7 @@ class GoalTouch final : public SkillGoal {
 
   std::vector<std::size_t> structure_;  ///< among those of the report
   double now_ = std::nan("");           ///< m
+  bool held_ = true;                    ///< by the other hand
 };
 
 }  // namespace insula

@@ -96,9 +96,9 @@ class SkillMetrics final : public MetricSet {
 
 INSULA_PLUGIN(skill_rules) {
   using namespace insula;
-  registry.add_material({"place_waiting", "solid", {0.50, 0.55, 0.60, 1}, 0.6, 0, 0});
-  registry.add_material({"place_of_left_hand", "solid", {0.16, 0.55, 0.95, 1}, 0.35, 0, 0});
-  registry.add_material({"place_of_right_hand", "solid", {1.0, 0.55, 0.10, 1}, 0.35, 0, 0});
+  registry.add_material({"place_waiting", "place", {0.50, 0.55, 0.60, 1}, 0.6, 0, 0});
+  registry.add_material({"place_of_left_hand", "place", {0.16, 0.55, 0.95, 1}, 0.35, 0, 0});
+  registry.add_material({"place_of_right_hand", "place", {1.0, 0.55, 0.10, 1}, 0.35, 0, 0});
   registry.add_material({"place_reached", "solid", {0.30, 0.72, 0.38, 1}, 0.5, 0, 0});
   registry.add_material({"place_reading", "solid", {1, 1, 1, 1}, 0.5, 0, 0});
   registry.add<GoalTouch>("goal_touch", Kind::exercise_rule, "reached when the tip of a hand has touched a target");

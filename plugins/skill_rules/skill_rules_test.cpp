@@ -43,6 +43,13 @@ class SkillRules : public ::testing::Test {
       if (d->spec().name == kind) return d->count();
     throw std::runtime_error(std::string("no drawable ") + kind);
   }
+  double unheld(const char* goal) {
+    Component* rule = s->scene().find(goal);
+    rule->publish();
+    for (const ChannelBase* c : rule->channels())
+      if (c->spec().name == "unheld") return *c->values(0);
+    throw std::runtime_error("no channel unheld");
+  }
   double metric(const std::string& id, int hand) {
     for (const MetricValue& m : s->exercise()->metrics())
       if (m.id == id && m.hand == hand) return m.known ? m.value : std::nan("");
@@ -73,6 +80,15 @@ TEST_F(SkillRules, TheTargetWantsItsHandItsTimeAndTheOtherHandsHold) {
   push(1, 0.004);
   show(10);
   EXPECT_FALSE(done(0)) << "the other hand holds too little";
+  EXPECT_EQ(unheld("target"), 1) << "which is told";
+  push(1, 0.01);
+  show(1);
+  EXPECT_EQ(unheld("target"), 0);
+  place(0, Vec3(0, 0, 0.1));
+  push(1, 0);
+  show(1);
+  EXPECT_EQ(unheld("target"), 0) << "away from the target nothing need be held";
+  place(0, near);
   push(1, 0.01);
   show(3);
   EXPECT_FALSE(done(0)) << "0.15 s of 0.2 s";
@@ -137,6 +153,19 @@ TEST_F(SkillRules, MarksShowWhoseTurnItIs) {
   EXPECT_EQ(marks("press", "reached"), 1);
   EXPECT_EQ(marks("press", "held"), 0);
   EXPECT_EQ(marks("press", "reading"), 0);
+}
+
+TEST_F(SkillRules, PlacesAreOpenUntilTheirGoalIsReached) {
+  const auto style = [&](const DrawableBase& d) {
+    for (const Material& m : s->scene().materials())
+      if (m.name == d.spec().material) return m.style;
+    return std::string("none");
+  };
+  for (const char* goal : {"target", "press"})
+    for (const DrawableBase* d : s->scene().find(goal)->drawables())
+      if (const std::string name(d->spec().name); name == "waiting" || name == "left" || name == "right")
+        EXPECT_EQ(style(*d), "place") << goal << '.' << name;
+      else EXPECT_NE(style(*d), "place") << goal << '.' << name;
 }
 
 /// The example's clip is free. Its blades, 9 mm long, point down from z = 13 mm at y = 5 mm.

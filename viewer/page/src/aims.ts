@@ -3,7 +3,7 @@
 import * as THREE from 'three';
 import type { Bundle } from './bundle_types';
 import type { RenderFrame } from './lcm';
-import { materialOf } from './step_data/declarations';
+import { StyledPlaces } from './styled_places';
 
 /** Tissue moves: a place so near to the chosen one in a later frame is still that one, m. */
 const sameM = 0.0015;
@@ -17,20 +17,15 @@ export class Aims {
     // Places in the depth shine through what lies over them.
     depthTest: false,
   });
-  private drawables: number[] = [];
+  private readonly marked = new StyledPlaces('aim');
   /** Of the marks. */
   private radiusM = 0;
   private chosen: THREE.Vector3 | null = null;
   private passed: THREE.Vector3[] = [];
 
   begin(bundle: Bundle): void {
-    const all = bundle.drawables.map(({ declared }) => ({
-      declared,
-      material: materialOf(bundle.materials, declared.material),
-    }));
-    const aims = all.filter(({ declared, material }) => declared.kind === 'points' && material.style === 'aim');
-    this.drawables = aims.map(({ declared }) => declared.index);
-    const [first] = aims;
+    this.marked.begin(bundle);
+    const first = this.marked.first();
     if (first) {
       const [r, g, b, opacity] = first.material.rgba;
       this.look.color.setRGB(r, g, b, THREE.SRGBColorSpace);
@@ -47,15 +42,7 @@ export class Aims {
 
   /** The places in a frame. */
   places(frame: Pick<RenderFrame, 'drawable'>): THREE.Vector3[] {
-    const out: THREE.Vector3[] = [];
-    for (const { index, data } of frame.drawable) {
-      if (!this.drawables.includes(index)) continue;
-      for (let k = 0; k + 3 < data.length; k += 4) {
-        const p = new THREE.Vector3(data[k], data[k + 1], data[k + 2]);
-        if (Number.isFinite(p.lengthSq())) out.push(p);
-      }
-    }
-    return out;
+    return this.marked.in(frame);
   }
 
   /** The place to go to: the one chosen before while it is there, otherwise the nearest that was not passed over. */

@@ -6,6 +6,11 @@ import type { Bundle, GuidePose } from './bundle_types';
 
 /** The other hand comes first when its target is earlier in the example by more than this. */
 const aheadS = 0.5;
+/** A place where something is still to be done belongs to the nearest target of both hands within this, m. */
+const placeM = 0.0035;
+/** Such a target is to be reached within this, m. */
+const undoneNearM = 0.001;
+
 interface Target {
   tool: string;
   /** What the example has asked of that tool, "load", and with which argument; '': nothing. */
@@ -99,6 +104,8 @@ export class Guide {
   private at = [0, 0];
   /** Whether the last target of a hand has been reached. */
   private done = [false, false];
+  /** Targets at which something is still to be done. */
+  private readonly undone = new Set<Target>();
 
   begin(bundle: Bundle): void {
     const poses = bundle.exercise?.guide ?? [];
@@ -112,6 +119,32 @@ export class Guide {
   restart(): void {
     this.at = [0, 0];
     this.done = [false, false];
+    this.undone.clear();
+  }
+
+  /** Tells at which places something is still to be done. */
+  see(places: readonly THREE.Vector3[]): void {
+    this.undone.clear();
+    const all = this.targets.flat();
+    for (const place of places) {
+      const nearest = all.reduce<Target | null>(
+        (a, b) => (a && a.p.distanceTo(place) <= b.p.distanceTo(place) ? a : b),
+        null,
+      );
+      if (nearest && nearest.p.distanceTo(place) < placeM) this.undone.add(nearest);
+    }
+  }
+
+  /** Whether a hand is to stay at its target until something is done there. */
+  stays(hand: number): boolean {
+    const next = this.target(hand);
+    return next !== null && this.undone.has(next.target);
+  }
+
+  /** How near a hand is to come to its target, m. */
+  nearM(hand: number): number {
+    const near = this.target(hand)?.target.nearM ?? 0;
+    return this.stays(hand) ? Math.min(near, undoneNearM) : near;
   }
 
   /** Whether a hand has followed the example to its end. */
@@ -143,12 +176,13 @@ export class Guide {
 
   /**
    * Goes on when the tool is where it should be with its buttons as they should be. No pose is passed over: sweeps come
-   * near much later poses on their way.
+   * near much later poses on their way. No target is left while something is still to be done there.
    */
   follow(hand: number, p: THREE.Vector3, q: THREE.Quaternion, buttons: { button1: boolean; button2: boolean }): void {
     const at = this.at[hand] ?? 0;
     const t = this.targets[hand]?.[at];
-    if (!t || t.button1 !== buttons.button1 || t.button2 !== buttons.button2 || !reached(p, q, t)) return;
+    if (!t || this.undone.has(t)) return;
+    if (t.button1 !== buttons.button1 || t.button2 !== buttons.button2 || !reached(p, q, t)) return;
     if (at + 1 < this.targets[hand]!.length) this.at[hand] = at + 1;
     else this.done[hand] = true;
   }

@@ -8,6 +8,7 @@ import { toolInHand, toolState } from './hand_tool';
 import { toolCommands } from './hud/commands';
 import type { GuideView } from './hud/guide_panel';
 import type { RenderFrame } from './lcm';
+import { StyledPlaces } from './styled_places';
 import { TargetGhost } from './target_ghost';
 import { listed } from './languages/lists';
 import { said } from './languages/said';
@@ -27,6 +28,8 @@ export interface GuidingInput {
   axes: Axes;
 }
 
+const sweepAcross = (): string => text('Sweep the edge across it');
+
 type TargetStatus = { at: number; of: number; distance_m: number; angle_rad: number } | null;
 
 export class Guiding {
@@ -37,6 +40,7 @@ export class Guiding {
   private readonly guide = new Guide();
   private readonly ghost = new TargetGhost();
   private readonly aims = new Aims();
+  private readonly undone = new StyledPlaces('place');
 
   constructor() {
     this.root.add(this.ghost.root, this.aims.root);
@@ -46,6 +50,7 @@ export class Guiding {
     this.guide.begin(bundle);
     this.ghost.begin(bundle);
     this.aims.begin(bundle);
+    this.undone.begin(bundle);
     this.view = null;
   }
 
@@ -77,6 +82,7 @@ export class Guiding {
     const tool = bundle.tools.find((t) => t.index === held.index);
     const id = tool?.id ?? '';
     const before = this.guide.target(hand)?.target;
+    this.guide.see(this.undone.in(frame));
     if (before?.tool === id && !toChoose(before, frame, bundle)) this.guide.follow(hand, p, q, buttons);
     if (tool?.cuts && this.guide.ended(hand)) {
       const status = this.leadOn(frame, held, p, q, axes);
@@ -85,18 +91,22 @@ export class Guiding {
     const next = this.guide.target(hand);
     if (!next) return null;
     const { target, at, of } = next;
-    const { nearM, nearRad } = target;
+    const { nearRad } = target;
+    const nearM = this.guide.nearM(hand);
     const offset = offsetOf(p, q, target, axes);
-    this.view = { at, of, offset, nearM, nearRad, leftOver: 0, todo: '', waits: this.guide.waits(hand) };
-    if (target.tool !== id) {
+    const takeUp = target.tool !== id;
+    this.view = { at, of, offset, nearM, nearRad, leftOver: 0, todo: '', takeUp, waits: this.guide.waits(hand) };
+    if (takeUp) {
       const wanted = bundle.tools.find((t) => t.id === target.tool);
-      this.view.todo = text('Take up: {tool}', { tool: said(wanted?.title ?? target.tool) });
+      this.view.todo = text('Take up: {tool} (T)', { tool: said(wanted?.title ?? target.tool) });
     } else {
       this.turn = { hand, q: target.q };
       const choice = toChoose(target, frame, bundle);
       this.view.todo = choice
         ? text('Choose from the list: {tool} (L)', { tool: said(choice.title) })
-        : buttonsToDo(target, buttons);
+        : this.guide.stays(hand)
+          ? toCount(target, buttons, offset.distanceM < nearM, tool?.cuts ?? false)
+          : buttonsToDo(target, buttons);
       if (offset.distanceM > ghostFromM || offset.angleRad > ghostFromRad)
         this.ghost.show(frame, held, target.p, target.q);
     }
@@ -116,10 +126,10 @@ export class Guiding {
     if (!to) return null;
     this.aims.show(places);
     const offset = offsetOf(p, q, { p: to, q }, axes);
-    const near = offset.distanceM < sweepFromM;
-    const todo = near ? text('Sweep the edge across it') : '';
+    const todo = offset.distanceM < sweepFromM ? sweepAcross() : '';
     const leftOver = places.length;
-    this.view = { at: 0, of: 0, leftOver, offset, nearM: sweepFromM, nearRad: Math.PI, todo, waits: false };
+    const near = { nearM: sweepFromM, nearRad: Math.PI };
+    this.view = { at: 0, of: 0, leftOver, offset, ...near, todo, takeUp: false, waits: false };
     if (offset.distanceM > ghostFromM) this.ghost.show(frame, held, to, q);
     return { at: 0, of: 0, distance_m: offset.distanceM, angle_rad: 0 };
   }
@@ -151,4 +161,11 @@ export function buttonsToDo(target: Buttons, now: Buttons): string {
     return [b === 1 ? text('hold button 1 (Space)') : text('hold button 2 (B)')];
   });
   return parts.length === 0 ? '' : text('At the target: {what}', { what: listed(parts) });
+}
+
+/** What to do where something is still to be done. there: at the target. Buttons are let go when it has counted. */
+export function toCount(target: Buttons, now: Buttons, there: boolean, cuts: boolean): string {
+  const presses = { button1: target.button1 || now.button1, button2: target.button2 || now.button2 };
+  const deed = () => (cuts ? sweepAcross() : text('Stay here until the goal is ticked'));
+  return buttonsToDo(presses, now) || (there ? deed() : '');
 }

@@ -7,7 +7,7 @@ import type { Bundle } from '../src/bundle_types';
 import type { RenderFrame } from '../src/lcm';
 
 const point = (index: number, material: string) => ({
-  declared: { index, kind: 'points', material, radiusM: 0.00025 },
+  declared: { index, kind: 'points', material, radiusM: 0.00025, pointsPerLine: 1 },
 });
 const bundle = {
   drawables: [point(0, 'steel'), point(3, 'aim')],

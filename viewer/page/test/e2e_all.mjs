@@ -17,6 +17,7 @@ const checks = [
   'replay',
   'start',
   'tour',
+  'skills',
   'room',
   'desk',
   'voice',

@@ -10,11 +10,13 @@ const holdMs = 5000;
 const neckShut = (view) => view.goals.every((g) => g.done || !/neck/.test(g.text)) || /neck is shut/.test(view.message);
 
 /** Who works beside an aneurysm moves with care. */
-const isCareful = (view) => view.chooses || view.goals.some((g) => /aneurysm/.test(g.text));
+const besideAneurysm = (view) => view.chooses || view.goals.some((g) => /aneurysm/.test(g.text));
 
 export class Practice {
-  constructor(person) {
+  /** careful: whether who sees that moves with care. */
+  constructor(person, careful = besideAneurysm) {
     this.person = person;
+    this.careful = careful;
     this.page = person.page;
     /** Of each hand: how many targets it has, and whether it has done them. */
     this.course = [0, 1].map(() => ({ of: 0, done: false }));
@@ -47,7 +49,13 @@ export class Practice {
     if (mine.done) return this.beginAgain(target, mine);
     const choice = /^Choose from the list: (.*) \(L\)$/.exec(view.todo)?.[1];
     if (choice) return this.choose(choice);
+    if (/^Take up: .* \(T\)$/.test(view.todo)) return this.takeUp();
     return this.goTo(target, view);
+  }
+
+  async takeUp() {
+    await this.page.keyboard.press('t');
+    return this.person.settled();
   }
 
   /** What the example has left over: goes there, and sweeps the edge across it; passes over what does not give way. */
@@ -60,7 +68,10 @@ export class Practice {
       await this.page.keyboard.press('n');
       return this.person.settled();
     }
-    if (!/^Sweep/.test(view.todo)) return this.person.reach(view, true);
+    return /^Sweep/.test(view.todo) ? this.sweepHere() : this.person.reach(view, true);
+  }
+
+  async sweepHere() {
     await this.person.sweep();
     return this.person.settled();
   }
@@ -87,8 +98,10 @@ export class Practice {
     const view = await this.person.look();
     if (view.target?.at !== target.at || view.hand < 0) return view;
     if (view.target.near && /button/.test(view.todo)) return this.press(view);
+    if (/^Stay here/.test(view.todo)) return this.person.settled();
+    if (/^Sweep/.test(view.todo)) return this.sweepHere();
     if (this.tries > 12) await this.page.keyboard.press('n');
-    const after = await this.person.reach(view, isCareful(view));
+    const after = await this.person.reach(view, this.careful(view));
     if (this.tries === 1) this.tell(after);
     return after;
   }

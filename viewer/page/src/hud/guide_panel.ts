@@ -17,6 +17,8 @@ export interface GuideView {
   nearRad: number;
   /** What the hand shall do that is no movement: "take up the applier", "hold button 1"; '': nothing. */
   todo: string;
+  /** Another tool comes first: the way is not for the one in the hand. */
+  takeUp: boolean;
   /** The example moves the other hand before this one reaches its target. */
   waits: boolean;
 }
@@ -89,7 +91,7 @@ export class GuidePanel {
     setText(this.title, `${what}: ${mm(offset.distanceM)}, ${degrees(offset.angleRad)}`);
     setText(this.todo, todo || (near ? text('✓ there') : ''));
     this.root.dataset.near = String(near);
-    const lines = directions(offset, nearM, nearRad).slice(0, 4);
+    const lines = view.takeUp ? [] : directions(offset, nearM, nearRad).slice(0, 4);
     const key = lines.join('\n');
     if (key === this.shown) return;
     this.shown = key;
