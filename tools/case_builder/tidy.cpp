@@ -34,9 +34,9 @@ void tidy(TriMesh& m, const std::string& what, const Options& o, std::vector<Not
   if (m.triangles.empty()) throw InputError(what + ": holds no triangle with an area");
   if (const BadEdges bad = non_manifold_edges(m); bad.count > 0)
     throw WallsMeet(
-        fmt::format("{} edge{} to three or more triangles (the first at {}): walls meet there inside of "
+        fmt::format("{}: {} edge{} to three or more triangles (the first at {}): walls meet there inside of "
                     "the vessel.",
-                    bad.count, bad.count == 1 ? " belongs" : "s belong", place(bad.first)));
+                    what, bad.count, bad.count == 1 ? " belongs" : "s belong", place(bad.first)));
   Pieces pieces = pieces_of(m);
   if (pieces.area.size() > 1) {
     double whole = 0;
