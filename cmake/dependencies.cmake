@@ -19,6 +19,7 @@ find_package(OpenSSL REQUIRED COMPONENTS Crypto SSL)
 pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
 pkg_check_modules(AVAHI REQUIRED IMPORTED_TARGET avahi-core)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET libzip)
 pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom)
 # Messages of urdfdom are captured through its console_bridge, which newer packages do not link by themselves.
 find_library(CONSOLE_BRIDGE_LIBRARY console_bridge REQUIRED)

@@ -133,7 +133,7 @@ list(FILTER engine_src EXCLUDE REGEX "/engine/main\\.cpp$")
 if(engine_src)
   add_library(insula_engine STATIC ${engine_src})
   target_link_libraries(insula_engine PUBLIC insula_plugins insula_haptics insula_servo insula_progress insula_xapi
-    PRIVATE OpenSSL::Crypto)
+    PRIVATE OpenSSL::Crypto PkgConfig::LIBZIP)
   target_compile_definitions(insula_engine PRIVATE INSULA_VERSION="${PROJECT_VERSION}")
 endif()
 if(EXISTS ${PROJECT_SOURCE_DIR}/engine/main.cpp)

@@ -6,6 +6,7 @@
 
 #include "core/params/option.h"
 #include "engine/authoring/new_plugin.h"
+#include "engine/command_line/cases.h"
 #include "engine/command_line/commands.h"
 #include "engine/command_line/common_options.h"
 #include "engine/command_line/people.h"
@@ -282,6 +283,7 @@ void add_commands(Options& c) {
   add_engine(c);
   insula::add_session_commands(c);
   insula::add_people_commands(c);
+  insula::add_case_commands(c);
   add_replay(c);
   add_play(c);
   add_view(c);

@@ -25,6 +25,7 @@
 #include "engine/live/scene_reload.h"
 #include "engine/live/session_lock.h"
 #include "engine/live/supervisor.h"
+#include "engine/sharing/case_list.h"
 #include "training/store/data_folder.h"
 #include "training/xapi/http_record_store.h"
 
@@ -131,8 +132,10 @@ bool sender_ok(const CommandContext& context, const PlayOptions& options) {
 StartPageFiles start_page_files(const PlayOptions& options, const fs::path& bundles) {
   if (bundles.empty() || options.view) return {};
   const StartPageFiles files{bundles / "catalogue.json", bundles / "choice.json", bundles / "curricula.json"};
-  const std::string text = catalogue_json(catalogue(project_folder()))
-                               .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  std::vector<CatalogueEntry> exercises = catalogue(project_folder());
+  for (CatalogueEntry& added : added_exercises(options.data)) exercises.push_back(std::move(added));
+  const std::string text =
+      catalogue_json(exercises).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   return leave_notice(files.catalogue, text) ? files : StartPageFiles{};
 }
 

@@ -2,7 +2,6 @@
 #include "engine/live/catalogue.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "core/xml/document.h"
 
@@ -24,8 +23,9 @@ int difficulty_of(const std::string& text) {
   return text.size() == 1 && text[0] >= '1' && text[0] <= '5' ? text[0] - '0' : 0;
 }
 
-/// Title and text, if the file is a scene with an exercise.
-std::optional<CatalogueEntry> read_entry(const fs::path& file) {
+}  // namespace
+
+std::optional<CatalogueEntry> catalogue_entry(const fs::path& file) {
   std::string text;
   if (!read_text_file(file.string(), most_scene_bytes, text).empty()) return std::nullopt;
   Diagnostics ignored;
@@ -39,12 +39,13 @@ std::optional<CatalogueEntry> read_entry(const fs::path& file) {
     out.text = value_of(*child, "text");
     out.site = value_of(*child, "site");
     out.difficulty = difficulty_of(value_of(*child, "difficulty"));
+    std::error_code error;
+    const fs::path picture = fs::absolute(fs::path(file).replace_extension(".jpg"));
+    if (fs::is_regular_file(picture, error)) out.picture = picture.string();
     return out;
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 std::vector<CatalogueEntry> catalogue(const fs::path& folder) {
   std::vector<CatalogueEntry> out;
@@ -56,12 +57,10 @@ std::vector<CatalogueEntry> catalogue(const fs::path& folder) {
       if (it->path().extension() == ".xml" && files.size() < most_scenes) files.push_back(it->path());
     std::sort(files.begin(), files.end());
     for (const fs::path& file : files) {
-      auto entry = read_entry(file);
+      auto entry = catalogue_entry(file);
       if (!entry) continue;
       entry->scene = file.lexically_relative(folder).generic_string();
       entry->group = group;
-      const fs::path picture = fs::absolute(fs::path(file).replace_extension(".jpg"));
-      if (fs::is_regular_file(picture, error)) entry->picture = picture.string();
       out.push_back(std::move(*entry));
     }
   }

@@ -3,6 +3,7 @@
 #pragma once
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct CatalogueEntry {
   std::string picture;  ///< file beside the scene, NAME.jpg; empty: there is none
 };
 
+/// Title and text of a file, if it is a scene with an exercise; neither its name nor its group is set.
+std::optional<CatalogueEntry> catalogue_entry(const std::filesystem::path& scene);
 /// All exercises below folder/scenes: first skills, then training, then cases, each in the order of their files' names.
 /// A file that cannot be read is left out, since a start page shows what works. Only titles and texts are read, so a
 /// folder of hundreds takes no time.

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command lines of the commands for cases.
+#include <memory>
+
+#include "engine/command_line/cases.h"
+#include "engine/command_line/common_options.h"
+
+namespace insula {
+
+void add_case_commands(CommandLine& line) {
+  auto* cases = line.app.add_subcommand("cases", "the cases of this installation, and how they go to another one");
+  const auto o = std::make_shared<CasesOptions>();
+  const auto runs = [&line, o](int (*run)(const CommandContext&, const CasesOptions&)) {
+    return [&line, o, run] { line.chosen = [o, run](const CommandContext& context) { return run(context, *o); }; };
+  };
+  add_data(*cases, o->data);
+  cases->add_flag("--json", o->json, "all about them, as JSON");
+  cases->require_subcommand(0, 1);
+  const auto add = [&](const char* name, const char* doc, int (*run)(const CommandContext&, const CasesOptions&)) {
+    auto* command = cases->add_subcommand(name, doc);
+    add_data(*command, o->data);
+    command->callback(runs(run));
+    return command;
+  };
+  auto* pack = add("pack", "write a case as one file, with all that its exercises need", cmd_cases_pack);
+  pack->add_option("name", o->name, "of the case")->required();
+  pack->add_option("-o,--output", o->file, "the file (default: NAME.zip)");
+  add("add", "add a case that was packed; it then stands on the start page", cmd_cases_add)
+      ->add_option("file", o->file, "NAME.zip")
+      ->required()
+      ->check(CLI::ExistingFile);
+  add("remove", "remove a case that was added", cmd_cases_remove)
+      ->add_option("name", o->name, "of the case")
+      ->required();
+  add("page", "a page of all cases for a web server: index.html, pictures and packed cases", cmd_cases_page)
+      ->add_option("folder", o->file, "to write to")
+      ->required();
+  cases->callback([&line, cases, o] {
+    if (cases->get_subcommands().empty())
+      line.chosen = [o](const CommandContext& context) { return cmd_cases(context, *o); };
+  });
+}
+
+}  // namespace insula

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+
+#include "core/base/input_error.h"
+#include "core/sim/simulation.h"
+#include "engine/command_line/cases.h"
+#include "engine/live/project_folder.h"
+#include "engine/sharing/case_page.h"
+
+namespace insula {
+namespace fs = std::filesystem;
+namespace {
+
+/// Runs what may refuse its input.
+template <class Work>
+int refusing(const CommandContext& context, Work work) {
+  try {
+    return work();
+  } catch (const InputError& e) {
+    fmt::print(context.err, "error: {}\n", e.what());
+  } catch (const fs::filesystem_error& e) {
+    fmt::print(context.err, "error: {}\n", e.what());
+  }
+  return 2;
+}
+
+/// Throws InputError if one of the scenes does not load. Its errors are printed.
+void check_scenes(const CommandContext& context, const std::vector<fs::path>& scenes) {
+  for (const fs::path& scene : scenes) {
+    const auto loaded = load_simulation(scene, context.registry);
+    if (loaded.simulation) continue;
+    fmt::print(context.err, "{}", loaded.diagnostics.format());
+    throw InputError(scene.string() + ": does not load");
+  }
+}
+
+std::vector<fs::path> scenes_of(const ListedCase& c) {
+  std::vector<fs::path> out;
+  for (const CatalogueEntry& e : c.exercises) out.push_back(project_folder() / e.scene);
+  return out;
+}
+
+}  // namespace
+
+int cmd_cases(const CommandContext& context, const CasesOptions& o) {
+  return refusing(context, [&] {
+    const std::vector<ListedCase> cases = list_cases(project_folder(), o.data);
+    if (o.json) {
+      fmt::print(context.out, "{}\n",
+                 cases_json(cases).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+      return 0;
+    }
+    for (const ListedCase& c : cases)
+      fmt::print(context.out, "{:<28} {:<26} {}  {} exercise{}{}\n", c.name, c.site().empty() ? "-" : c.site(),
+                 c.difficulty() > 0 ? std::to_string(c.difficulty()) : "-", c.exercises.size(),
+                 c.exercises.size() == 1 ? "" : "s", c.added ? ", added" : "");
+    return 0;
+  });
+}
+
+int cmd_cases_pack(const CommandContext& context, const CasesOptions& o) {
+  return refusing(context, [&] {
+    const std::vector<ListedCase> cases = list_cases(project_folder(), o.data);
+    const auto it = std::find_if(cases.begin(), cases.end(), [&](const ListedCase& c) { return c.name == o.name; });
+    if (it == cases.end()) throw InputError("there is no case \"" + o.name + "\"; insula cases lists them");
+    const fs::path archive = o.file.empty() ? fs::path(o.name + ".zip") : o.file;
+    check_scenes(context, scenes_of(*it));
+    const PackedCase packed = pack_listed(*it, project_folder(), archive);
+    fmt::print(context.out, "{}: {} scenes, {} files, {:.1f} MB unpacked\n", archive.string(), packed.scenes.size(),
+               packed.files, 1e-6 * double(packed.bytes));
+    return 0;
+  });
+}
+
+int cmd_cases_add(const CommandContext& context, const CasesOptions& o) {
+  return refusing(context, [&] {
+    const fs::path folder = added_cases_folder(o.data);
+    const PackedCase packed = unpack_case(o.file, folder);
+    std::vector<fs::path> scenes;
+    for (const std::string& scene : packed.scenes) scenes.push_back(folder / packed.name / scene);
+    try {
+      check_scenes(context, scenes);
+    } catch (const InputError&) {
+      fs::remove_all(folder / packed.name);
+      throw;
+    }
+    fmt::print(context.out, "{} is added: {} exercises, on the start page under cases\n", packed.name,
+               packed.scenes.size());
+    return 0;
+  });
+}
+
+int cmd_cases_remove(const CommandContext& context, const CasesOptions& o) {
+  return refusing(context, [&] {
+    const fs::path folder = added_cases_folder(o.data) / o.name;
+    if (!is_case_name(o.name) || !fs::is_directory(folder))
+      throw InputError("no case \"" + o.name + "\" was added; insula cases lists them");
+    fs::remove_all(folder);
+    fmt::print(context.out, "{} is removed\n", o.name);
+    return 0;
+  });
+}
+
+int cmd_cases_page(const CommandContext& context, const CasesOptions& o) {
+  return refusing(context, [&] {
+    const std::vector<ListedCase> cases = list_cases(project_folder(), o.data);
+    for (const ListedCase& c : cases) check_scenes(context, scenes_of(c));
+    write_case_page(cases, project_folder(), o.file);
+    fmt::print(context.out, "{}: {} cases\n", (o.file / "index.html").string(), cases.size());
+    return 0;
+  });
+}
+
+}  // namespace insula
