@@ -69,7 +69,8 @@ Played play(const fs::path& scene, double longest) {
   }
   out.state = s.exercise()->log().state(), out.end = s.time();
   out.strands = int(channel_sum(s, "total")), out.left = int(channel_sum(s, "standing"));
-  for (const MeasureState& m : s.exercise()->log().measures()) out.measures[m.id] = m.value;
+  for (const MeasureState& m : s.exercise()->log().measures())
+    if (m.known) out.measures[m.id] = m.value;
   for (const FaultState& f : s.exercise()->log().faults()) out.faults[f.id] = f.count;
   return out;
 }
@@ -115,6 +116,7 @@ TEST_P(RealCase, BecomesACaseWhoseExercisesTheMotionsMadeForItFinish) {
   // The case tells what its rehearsal came to, and the written motion does just that.
   const Json written = read_json(made.path / "scenes.json"), claimed = written.at("clipping");
   EXPECT_EQ(c.state == ExerciseState::done, claimed.at("goal").get<bool>());
+  ASSERT_TRUE(c.measures.contains("grade") && c.measures.contains("remnant_pct")) << "no clip was judged";
   EXPECT_EQ(c.measures.at("grade"), claimed.at("grade").get<int>());
   EXPECT_NEAR(c.measures.at("remnant_pct"), claimed.at("remnant_pct").get<double>(), 1e-3);
   const bool sound = claimed.at("goal").get<bool>() && claimed.at("faults") == 0 && claimed.at("grade") <= 1 &&

@@ -187,14 +187,21 @@ std::string clipping_motion(const ClipPlan& plan) {
 
 std::vector<ClipPlan> distinct_plans(const std::vector<ClipPlan>& ranked, std::size_t most) {
   std::vector<ClipPlan> out;
-  for (const ClipPlan& p : ranked) {
-    if (out.size() == most) break;
-    const bool like_another = std::any_of(out.begin(), out.end(), [&](const ClipPlan& o) {
-      const bool near = std::abs(o.at.turn - p.at.turn) < 29 && o.at.mirrored == p.at.mirrored;
-      return near && (o.clip.name == p.clip.name || std::abs(o.clip.blade - p.clip.blade) < 1.5);
-    });
-    if (!like_another) out.push_back(p);
-  }
+  const auto add = [&](std::size_t until, bool whole_neck_alone) {
+    for (const ClipPlan& p : ranked) {
+      if (out.size() >= until) break;
+      if (whole_neck_alone && p.leaves_remnant()) continue;
+      const bool like_another = std::any_of(out.begin(), out.end(), [&](const ClipPlan& o) {
+        const bool near = std::abs(o.at.turn - p.at.turn) < 29 && o.at.mirrored == p.at.mirrored;
+        return near && (o.clip.name == p.clip.name || std::abs(o.clip.blade - p.clip.blade) < 1.5);
+      });
+      if (!like_another) out.push_back(p);
+    }
+  };
+  // Half of them are long enough for the whole neck, however far their applier is off the line of sight.
+  add(most - most / 2, false);
+  add(most, true);
+  add(most, false);
   return out;
 }
 

@@ -39,7 +39,8 @@ struct RehearsedClip {
 /// The hands' motion for a plan, as the text of a file.
 std::string clipping_motion(const ClipPlan& plan);
 
-/// Different plans among the best, at most `most` of them: other clips, other turns.
+/// Different plans among the best, at most `most` of them: other clips, other turns. Half of them reach over the whole
+/// neck, if there are such.
 std::vector<ClipPlan> distinct_plans(const std::vector<ClipPlan>& ranked, std::size_t most);
 
 /// Plays the written exercise with the clips of `tried`, whose first motion is the file `motion`. The plans' blades are

@@ -16,7 +16,7 @@ struct EdgePoint {
     return (1 - share) * vertices[std::size_t(a)] + share * vertices[std::size_t(b)];
   }
 };
-/// Segments of the line in which the neck's plane cuts the triangles of neck and sac.
+/// Segments of the closed line, of all in which the neck's plane cuts the wall, whose middle is nearest to the neck's.
 std::vector<std::array<EdgePoint, 2>> neck_line(const artery::Vessel& vessel);
 
 /// The neck of a wall whose vertices have moved: middle and best plane of the same line.

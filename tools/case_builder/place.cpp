@@ -7,6 +7,7 @@
 
 #include "core/base/input_error.h"
 #include "tools/case_builder/brain.h"
+#include "tools/case_builder/clip_plan.h"
 #include "tools/case_builder/wall.h"
 #include "tools/mesh_lobes/mesh_data.h"
 
@@ -22,25 +23,31 @@ void write_lobe(const fs::path& folder, const Lobe& lobe) {
   write_ply(folder / (lobe.name + "_surface.ply"), lobe.surface, "unit mm; a lobe parted for a vessel");
 }
 
-/// A placement with the lobes parted for it.
+/// A placement with the lobes parted for it, and the clip that then seems to fit best.
 struct Fitted {
   Placement placement;
   artery::Vessel vessel;
   Fissure fissure;
   std::vector<Room> rooms;
   std::vector<Note> notes;
+  ClipPlan plan;
+  bool settles() const { return is_sound(rooms) && is_clear(rooms) && !plan.leaves_remnant(); }
   double least_room() const {
     return std::min_element(rooms.begin(), rooms.end(), [](const Room& a, const Room& b) { return a.after < b.after; })
         ->after;
   }
   bool better_than(const Fitted& other) const {
-    return std::pair(is_sound(rooms), least_room()) > std::pair(is_sound(other.rooms), other.least_room());
+    if (is_sound(rooms) != is_sound(other.rooms)) return is_sound(rooms);
+    if (is_clear(rooms) != is_clear(other.rooms)) return is_clear(rooms);
+    return is_clear(rooms) ? plan.cost < other.plan.cost : least_room() > other.least_room();
   }
 };
 
-Fitted fitted(const artery::Vessel& v, const Fissure& fissure, const Placement& p, double gap, Progress& progress) {
-  Fitted out{p, placed(v, p), fissure, {}, {}};
-  out.rooms = part_lobes(out.fissure, out.vessel.wall.mesh, gap, out.notes, progress);
+Fitted fitted(const artery::Vessel& v, const Fissure& fissure, const Placement& p, const std::vector<ClipShape>& clips,
+              const Options& o, Progress& progress) {
+  Fitted out{p, placed(v, p), fissure, {}, {}, {}};
+  out.rooms = part_lobes(out.fissure, out.vessel.wall.mesh, o.gap, out.notes, progress);
+  out.plan = clip_plans(out.vessel, Solid(out.fissure.insula), clips, o).front();
   return out;
 }
 
@@ -55,9 +62,10 @@ void run_place(const CaseFolder& folder, const fs::path& project, const Options&
   const std::vector<Placement> all = o.in_place && !o.brain.empty() ? std::vector<Placement>{brain_motion(folder)}
                                                                     : find_placements(v, fissure, o, progress);
   progress.step("parting the lobes");
-  Fitted best = fitted(v, fissure, all.front(), o.gap, progress);
-  for (std::size_t k = 1; k < all.size() && !(is_sound(best.rooms) && is_clear(best.rooms)); ++k)
-    if (Fitted next = fitted(v, fissure, all[k], o.gap, progress); next.better_than(best)) best = std::move(next);
+  const std::vector<ClipShape> clips = read_clips(project);
+  Fitted best = fitted(v, fissure, all.front(), clips, o, progress);
+  for (std::size_t k = 1; k < all.size() && !best.settles(); ++k)
+    if (Fitted next = fitted(v, fissure, all[k], clips, o, progress); next.better_than(best)) best = std::move(next);
   if (!is_sound(best.rooms))
     throw InputError(fmt::format(
         "the vessel has no place in this fissure: its dome is {:.1f} mm high, and the lobes would have to be "

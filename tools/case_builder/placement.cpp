@@ -12,6 +12,8 @@ namespace insula::case_builder {
 namespace {
 
 constexpr double reach = 12;  // mm, around the neck's position: the region in which rotations are tested
+constexpr double past_neck = 1.5, room_of_tips = 0.8;  // mm: of the tips past the flattened neck, and before the floor
+constexpr double behind_costs = 0.1;
 constexpr int coarse_spins = 24;
 constexpr std::size_t most_placements = 4;
 constexpr double least_apart = 0.7;  // rad, of the turns of two placements
@@ -50,7 +52,11 @@ class PlacementCost {
  public:
   const double wanted_spin;  ///< rad
   PlacementCost(const artery::Vessel& v, const Fissure& fissure, const Options& o)
-      : wanted_spin(o.spin * std::numbers::pi / 180), base_(base_rotation(v)), o_(o) {
+      : wanted_spin(o.spin * std::numbers::pi / 180),
+        base_(base_rotation(v)),
+        normal_(v.neck->normal),
+        behind_neck_(0.25 * std::numbers::pi * v.neck->diameter + past_neck),
+        o_(o) {
     const Vec3 low = place_of_neck - Vec3::Constant(reach + 4), high = place_of_neck + Vec3::Constant(reach + 4);
     const auto add = [&](const TriMesh& mesh, double weight) {
       obstacles_.push_back({DistanceGrid(Solid(mesh), low, high, 0.8, limit), weight});
@@ -74,6 +80,14 @@ class PlacementCost {
       for (const Obstacle& ob : obstacles_)
         if (const double in = o_.gap + wall_half - ob.grid.at(p); in > 0) sum += ob.weight * in * in;
     }
+    // Blades across the neck need room for their tips before the insula, which does not give way.
+    const Vec3 normal = r * normal_, back = -(to_surgeon - to_surgeon.dot(normal) * normal).normalized();
+    double behind = 0;
+    for (const double share : {0.6, 0.8, 1.0}) {
+      const Vec3 p = place_of_neck + t.shift + share * behind_neck_ * back;
+      behind += std::pow(std::max(0.0, room_of_tips - obstacles_[insula].grid.at(p)), 2);
+    }
+    sum += behind_costs * double(samples_.size()) * behind;
     const double away = std::remainder(t.spin - wanted_spin, 2 * std::numbers::pi);
     return sum / double(samples_.size()) + 0.25 * (t.tilt_a * t.tilt_a + t.tilt_b * t.tilt_b) +
            0.01 * t.shift.squaredNorm() + (o_.keep_spin ? 50 : 0.01) * away * away;
@@ -84,7 +98,10 @@ class PlacementCost {
     DistanceGrid grid;
     double weight;
   };
+  static constexpr std::size_t insula = 2;  // of the obstacles
   Mat3 base_;
+  Vec3 normal_;         ///< of the neck, in the vessel's frame
+  double behind_neck_;  ///< from its middle to the tips of blades that close it, mm
   const Options& o_;
   std::vector<Obstacle> obstacles_;
   std::vector<Vec3> samples_;  ///< vertices of the wall relative to the neck's centre, mm
