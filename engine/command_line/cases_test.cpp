@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// insula cases: a case that does not load here is not added, and one that does is listed and can be removed.
+#include "engine/command_line/cases.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "core/registry/registry.h"
+#include "core/testing/block_mesh.h"
+#include "engine/sharing/case_archive.h"
+
+namespace insula {
+namespace {
+namespace fs = std::filesystem;
+
+class CasesCommand : public testing::Test {
+ protected:
+  CasesCommand() {
+    register_builtin(registry_);
+    options_.data = folder_.path() / "data";
+  }
+  fs::path packed(const std::string& name, const std::string& scene) {
+    folder_.write(name + "/a.xml", scene);
+    pack_case(name, {folder_.path() / name / "a.xml"}, {}, folder_.path() / (name + ".zip"));
+    return folder_.path() / (name + ".zip");
+  }
+  int run(int (*command)(const CommandContext&, const CasesOptions&)) {
+    out_.str(""), err_.str("");
+    return command({registry_, out_, err_}, options_);
+  }
+
+  test::SceneFolder folder_;
+  Registry registry_;
+  CasesOptions options_;
+  std::ostringstream out_, err_;
+};
+
+TEST_F(CasesCommand, ACaseIsAddedListedAndRemoved) {
+  options_.file = packed("tip", R"(<scene><exercise title="Tip" text="Look."/></scene>)");
+  ASSERT_EQ(run(cmd_cases_add), 0) << err_.str();
+  EXPECT_EQ(run(cmd_cases_add), 2);
+  EXPECT_NE(err_.str().find("is there already"), std::string::npos);
+  ASSERT_EQ(run(cmd_cases), 0);
+  EXPECT_NE(out_.str().find("tip "), std::string::npos);
+  EXPECT_NE(out_.str().find("1 exercise, added"), std::string::npos);
+  options_.name = "tip";
+  ASSERT_EQ(run(cmd_cases_remove), 0);
+  EXPECT_EQ(run(cmd_cases_remove), 2);
+  ASSERT_EQ(run(cmd_cases), 0);
+  EXPECT_EQ(out_.str().find("added"), std::string::npos);
+  options_.name = "../data";
+  EXPECT_EQ(run(cmd_cases_remove), 2);
+  EXPECT_TRUE(fs::exists(options_.data / "cases"));
+}
+
+TEST_F(CasesCommand, ASceneWithErrorsIsNotAdded) {
+  options_.file = packed("broken", R"(<scene><exercise textt="Look."/></scene>)");
+  EXPECT_EQ(run(cmd_cases_add), 2);
+  EXPECT_NE(err_.str().find("did you mean \"text\""), std::string::npos) << err_.str();
+  EXPECT_FALSE(fs::exists(options_.data / "cases/broken"));
+}
+
+TEST_F(CasesCommand, AnUnknownCaseIsNotPacked) {
+  options_.name = "nobody_has_this";
+  EXPECT_EQ(run(cmd_cases_pack), 2);
+  EXPECT_NE(err_.str().find("there is no case"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace insula
