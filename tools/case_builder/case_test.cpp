@@ -124,7 +124,10 @@ TEST_P(RealCase, BecomesACaseWhoseExercisesTheMotionsMadeForItFinish) {
   EXPECT_NE(sound, expects_a_remnant(written));
   // One clip seldom shuts a neck as wide as that of the first one.
   EXPECT_TRUE(sound || v.neck->diameter > 5.5);
-  EXPECT_LT(c.measures.at("slit"), 1.2);
+  // Blades that never closed leave no slit to be measured.
+  if (c.measures.contains("slit")) {
+    EXPECT_LT(c.measures.at("slit"), 1.2);
+  }
   expect_no_fault_but_forces(c.faults);
   for (const auto& [id, value] : c.measures)
     if (id.ends_with(".flow_pct")) {
