@@ -9,24 +9,13 @@
 #include "core/base/text.h"
 #include "core/params/list.h"
 #include "engine/authoring/describe.h"
+#include "engine/reports/svg_plot.h"
 #include "training/curriculum/limit_param.h"
 
 namespace insula {
 namespace {
 
 constexpr const char* number_pattern = R"([+\-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+\-]?[0-9]+)?)";
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (char c : text) switch (c) {
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '&': out += "&amp;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  return out;
-}
 
 /// "(Pa|kPa)", with any number of blanks where a symbol has one.
 std::string unit_pattern(std::span<const Unit> units) {

@@ -197,9 +197,11 @@ PackedCase pack_case(const std::string& name, const std::vector<fs::path>& scene
     out.bytes += bytes.emplace(path, read_file_bytes(file)).first->second.size();
     hashes[path] = hash_of(bytes[path]);
   }
-  for (const fs::path& scene : scenes)
+  for (const fs::path& scene : scenes) {
+    const fs::path packed = fs::weakly_canonical(scene);
     for (const auto& [path, file] : files)
-      if (file == fs::weakly_canonical(scene)) out.scenes.push_back(path);
+      if (file == packed) out.scenes.push_back(path);
+  }
   std::sort(out.scenes.begin(), out.scenes.end());
   const nlohmann::ordered_json manifest = {
       {"format", format}, {"name", name}, {"scenes", out.scenes}, {"files", hashes}};

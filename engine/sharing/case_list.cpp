@@ -77,9 +77,10 @@ std::vector<ListedCase> list_cases(const fs::path& project, const fs::path& data
     std::vector<CatalogueEntry> exercises = exercises_of(folder);
     if (exercises.empty()) continue;
     const fs::path of_scenes = fs::path(exercises.front().scene).parent_path();
+    const std::string name = folder.filename().string();
     // An added case of a name that the project has too is another one.
-    ListedCase& c = cases[folder.filename().string() + (cases.count(folder.filename().string()) ? " (added)" : "")];
-    c = {folder.filename().string(), of_scenes, true, std::move(exercises), read_report(of_scenes)};
+    cases[name + (cases.count(name) ? " (added)" : "")] = {name, of_scenes, true, std::move(exercises),
+                                                           read_report(of_scenes)};
   }
   std::vector<ListedCase> out;
   for (auto& [name, c] : cases) out.push_back(std::move(c));

@@ -5,19 +5,14 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 
 #include "core/base/input_error.h"
+#include "engine/reports/svg_plot.h"
 
 namespace insula {
 namespace fs = std::filesystem;
 namespace {
-
-std::string html_text(const std::string& s) {
-  std::string out;
-  for (const char c : s)
-    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
-  return out;
-}
 
 constexpr const char* head = R"(<!doctype html>
 <html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
@@ -56,15 +51,15 @@ std::string measured(const nlohmann::json& report) {
 }
 
 std::string card(const ListedCase& c, bool picture) {
-  std::string facts = c.site().empty() ? "" : html_text(c.site());
+  std::string facts = c.site().empty() ? "" : escaped(c.site());
   if (c.difficulty() > 0) facts += fmt::format("{}difficulty {} of 5", facts.empty() ? "" : " · ", c.difficulty());
   std::string exercises;
-  for (const CatalogueEntry& e : c.exercises) exercises += "<li>" + html_text(e.title) + "</li>";
+  for (const CatalogueEntry& e : c.exercises) exercises += "<li>" + escaped(e.title) + "</li>";
   return fmt::format(
       "<article>{}<div class=\"text\"><h2>{}</h2><p class=\"facts\">{}</p><p>{}</p><ul>{}</ul><p class=\"facts\">{}</p>"
       "<a href=\"{}.zip\" download>{}.zip</a></div></article>\n",
-      picture ? fmt::format("<img src=\"{}.jpg\" alt=\"\">", c.name) : "<div class=\"none\"></div>",
-      html_text(c.title()), facts, html_text(c.exercises.front().text), exercises, measured(c.report), c.name, c.name);
+      picture ? fmt::format("<img src=\"{}.jpg\" alt=\"\">", c.name) : "<div class=\"none\"></div>", escaped(c.title()),
+      facts, escaped(c.exercises.front().text), exercises, measured(c.report), c.name, c.name);
 }
 
 }  // namespace

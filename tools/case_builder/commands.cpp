@@ -8,6 +8,7 @@
 
 #include "core/base/input_error.h"
 #include "core/sim/exercise.h"
+#include "engine/sharing/case_archive.h"
 #include "tools/case_builder/brain.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/place.h"
@@ -253,9 +254,7 @@ int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::
     Progress progress(err);
     CaseFolder folder;
     if (line.stage.empty()) {
-      if (line.name.empty() || line.name.size() > 64 ||
-          !std::all_of(line.name.begin(), line.name.end(),
-                       [](unsigned char c) { return c < 128 && (std::isalnum(c) || c == '_' || c == '-'); }))
+      if (!is_case_name(line.name))
         throw InputError("the name of a case has letters, digits, _ and - only, 64 at most: \"" + line.name +
                          "\" has not");
       const fs::path into = line.out.empty() ? find_project(fs::current_path()) / "scenes/cases" : fs::path(line.out);

@@ -58,14 +58,16 @@ void add_mesh(FindingSection& s, const artery::Vessel& v) {
 /// How sure the neck is, and where else it may be, as options to be given.
 void add_neck_proposals(FindingSection& s, const Json& neck) {
   const double confidence = neck.at("confidence");
+  const Json& proposals = neck.at("proposals");
+  if (proposals.empty()) return;
   std::string others;
-  for (const Json& p : neck.at("proposals")) {
-    if (p == neck.at("proposals").front() || !p.at("planar").get<bool>()) continue;
+  for (std::size_t k = 1; k < proposals.size(); ++k) {  // the first is the neck
+    const Json& p = proposals[k];
+    if (!p.at("planar").get<bool>()) continue;
     others +=
         fmt::format("{}{}, {:.2f} mm: --neck \"{}\"", others.empty() ? "" : "; ", p.at("method").get<std::string>(),
                     p.at("diameter_mm").get<double>(), p.at("option").get<std::string>());
   }
-  if (neck.at("proposals").empty()) return;
   s.findings.push_back(check(confidence >= sure_neck, "neck_unsure", "agreement of three methods on the neck",
                              fmt::format("{:.0f} %", 100 * confidence),
                              "Look whether the disc in the pictures stands in the neck. If not, move it (--neck, "

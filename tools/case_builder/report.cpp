@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/input_error.h"
+#include "engine/reports/svg_plot.h"
 #include "tools/case_builder/findings.h"
 #include "tools/case_builder/picture.h"
 #include "tools/case_builder/place.h"
@@ -12,13 +15,6 @@
 
 namespace insula::case_builder {
 namespace {
-
-std::string escaped(const std::string& s) {
-  std::string out;
-  for (const char c : s)
-    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
-  return out;
-}
 
 std::array<int, 3> colour_of(const std::string& region) {
   if (region == "sac") return {224, 82, 74};

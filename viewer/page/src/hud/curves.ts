@@ -34,12 +34,13 @@ export class TimeChart {
     this.root = el('div', { class: 'chart' }, this.canvas, el('div', { class: 'legend' }, ...legend));
   }
 
-  /** One sample; time may jump back (a reset): then the curves begin anew. null: not known, a gap. */
+  /** The curves of another scene begin anew. */
   clear(): void {
     this.samples.length = 0;
     this.draw();
   }
 
+  /** One sample; time may jump back (a reset): then the curves begin anew. null: not known, a gap. */
   add(timeS: number, values: (number | null)[]): void {
     const last = this.samples[this.samples.length - 1];
     if (last && timeS < last.t) this.samples.length = 0;
