@@ -19,6 +19,8 @@ namespace {
 constexpr std::size_t max_from_page = 64 * 1024;
 // Less than the kernel would take: what waits there is old by the time a slow client reads it.
 constexpr int socket_send_buffer = 128 * 1024;
+// A browser answers no ping while its page is held up, for instance by the first picture on a slow machine.
+constexpr std::chrono::seconds longest_silence{120};
 
 /// Of pages, in the record of commands.
 std::uint64_t next_number() {
@@ -40,7 +42,7 @@ void WsClient::start(const http::request<http::string_body>& request) {
   socket.set_option(asio::socket_base::send_buffer_size(socket_send_buffer), ignored);
   beast::get_lowest_layer(ws_).expires_never();  // the WebSocket has timeouts of its own
   websocket::stream_base::timeout timeouts = websocket::stream_base::timeout::suggested(beast::role_type::server);
-  timeouts.idle_timeout = std::chrono::seconds(30);
+  timeouts.idle_timeout = longest_silence;
   timeouts.keep_alive_pings = true;
   ws_.set_option(timeouts);
   ws_.read_message_max(max_from_page);

@@ -98,7 +98,7 @@ const link = new Connection(socketUrl(location.href, options.role), {
   room: (m) => room.hear(m),
   state: (open) => {
     status.connected = open;
-    if (open) return;
+    if (open) return room.reconnected();
     info = null;
     sound.lost();
     hands.releaseAll();

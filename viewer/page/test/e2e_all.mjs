@@ -26,6 +26,7 @@ const checks = [
   'keyboard',
   'certificate',
   'firefox',
+  'sound_firefox',
 ];
 const skipped = 77;
 /** A check that hangs must not keep the others from running. */

@@ -63,7 +63,8 @@ async function makeAll(page) {
     .getByText(/until this program ends/)
     .waitFor(patience);
   await press(page, 'Make a key');
-  await press(page, 'Show the key');
+  await page.waitForFunction(() => document.activeElement?.textContent === 'Show the key', null, patience);
+  await page.keyboard.press('Enter');
   const key = await dialog(page).locator('code').innerText();
   assert.match(key, /^[0-9a-f]{64}$/);
   return key;

@@ -15,6 +15,8 @@ import { drawNothing, tapMessages, tapSound } from './sound_tap.mjs';
 
 /** From the arrival of a message to the sound, ms. */
 const latestMs = 20;
+/** How far what a page says of it may be off, ms. Firefox hands its audio several blocks at once. */
+const roundingMs = process.env.INSULA_BROWSER === 'firefox' ? 15 : 4;
 const root = fileURLToPath(new URL('../../..', import.meta.url));
 const option = (name, otherwise) => {
   const i = process.argv.indexOf(`--${name}`);
@@ -94,7 +96,10 @@ async function listenToMock(browser) {
     // Date.now() of the audio's thread has whole milliseconds.
     assert.ok(Math.min(...measured) > -1.5 && share(measured, 0.5) < latestMs, told(measured));
     const apart = heard.map((x) => Math.abs(x.own - x.measured));
-    assert.ok(share(apart, 0.5) < 4, `the page says ${told(heard.map((x) => x.own))}, the audio ${told(measured)}`);
+    assert.ok(
+      share(apart, 0.5) < roundingMs,
+      `the page says ${told(heard.map((x) => x.own))}, the audio ${told(measured)}`,
+    );
     const { device_ms: device } = await report();
     check(
       `events begin in the audio's own thread after their arrival: ${told(measured)}; the page says ` +
@@ -118,7 +123,7 @@ async function listenToMock(browser) {
     check('it falls silent when the engine is gone');
     assert.ok((await page.evaluate(() => window.__tap.peak)) < 0.951);
     assert.deepEqual(
-      errors.filter((e) => !e.includes('WebSocket')),
+      errors.filter((e) => !/WebSocket|ws:/.test(e)),
       [],
     );
     check('no sample was above 0.95, and there are no errors in the console');

@@ -17,6 +17,7 @@ export function tapSound() {
       const wall = Date.now();
       if (wall !== this.blocks.at(-1)?.wall) this.blocks.push({ at: currentTime, wall });
       if (x) this.listen(x, wall);
+      else this.quiet += 128; // Firefox hands on nothing of nodes that are at rest.
       if (currentTime > this.told + 0.1) {
         this.told = currentTime;
         this.port.postMessage({ peak: this.peak, quiet: this.quiet / sampleRate, more: this.blocks });

@@ -81,7 +81,22 @@ export class AccessDialog {
     }
   }
 
+  /** Who works by keys goes on at what took the place of the pressed button. */
   private show(view: AccessView): void {
+    const place = this.places().indexOf(document.activeElement as HTMLElement);
+    this.fill(view);
+    if (place >= 0)
+      this.places()
+        .at(Math.min(place, this.places().length - 1))
+        ?.focus();
+  }
+
+  /** What keys reach in the body of the dialog, in order. */
+  private places(): HTMLElement[] {
+    return [...this.body.querySelectorAll<HTMLElement>('button, summary, input')];
+  }
+
+  private fill(view: AccessView): void {
     const notice = view.reachable ? '' : text('Other machines do not reach this one: it was started without --listen.');
     this.body.replaceChildren(
       el('p', { class: 'hint' }, notice),

@@ -63,6 +63,10 @@ export class RoomDesk {
     else this.take(m);
   }
 
+  reconnected(): void {
+    this.voice?.call.reconnected();
+  }
+
   /** How many pages of the other side there are. */
   private others(count: number): void {
     this.voice?.panel.setOthers(count);

@@ -75,13 +75,18 @@ export class Voice {
     this.close(why);
   }
 
+  /** The way to the gateway is open again; what was sent just before it closed is lost. */
+  reconnected(): void {
+    if (this.state === 'calling' && this.own) this.send({ kind: 'voice', step: 'ring' });
+  }
+
   hear(m: VoiceMessage): void {
     if (m.step === 'ring') return this.rung(m);
     if (m.step === 'accept') {
       if (this.state === 'calling' && this.own) void this.join(m.page).catch(() => this.hangUp('lost'));
     } else if (m.step === 'end') {
-      if (this.peer === m.page || (this.state === 'calling' && this.peer === 0))
-        this.close(this.state === 'calling' ? 'declined' : '');
+      const declined = this.state === 'calling' && m.from !== this.role;
+      if (this.peer === m.page || declined) this.close(declined ? 'declined' : '');
     } else if ('sdp' in m && this.state === 'joining' && m.page === this.peer) {
       void this.agree(m.step, m.sdp).catch(() => this.hangUp('lost'));
     }
