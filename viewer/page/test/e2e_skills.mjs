@@ -76,6 +76,7 @@ async function task(file) {
     const began = Date.now();
     const view = await practise(page, file.replace('.xml', ''));
     assert.ok(view.goals.length > 0 && view.goals.every((g) => g.done), `${file}: ${shown(view)}`);
+    assert.equal(view.target, null, 'after the end there is no target');
     assert.deepEqual(errors, []);
     const seconds = ((Date.now() - began) / 1000).toFixed(0);
     check(`${file}: all ${view.goals.length} goals by one mouse in ${seconds} s, faults: ${view.faults.join(', ')}`);

@@ -23,7 +23,7 @@ import type { Metrics } from './metrics';
 import { NoticePanel } from './notice';
 import { SessionPanel } from './session_panel';
 import { type SoundActions, SoundPanel } from './sound_panel';
-import type { HudState } from './state';
+import { type HudState, isOver } from './state';
 import { Tabs } from './tabs';
 import { Toasts } from './toasts';
 import { makeTouch, type TouchActions } from './touch';
@@ -171,7 +171,7 @@ export class Hud {
     if (state && state !== this.state) this.showState(state);
     if (state && !this.bundle?.inventory) this.session.show(state, ready);
     this.state = state;
-    this.guide.show(guide, assists);
+    this.guide.show(state && isOver(state) ? null : guide, assists);
     this.exercise.showClock(state?.elapsedS ?? frame.sim_time_s);
     const forces = this.hands.map((panel, hand) => {
       const tool = this.bundle ? toolInHand(frame, this.bundle, hand) : null;
@@ -281,7 +281,7 @@ export class Hud {
 
   private showState(s: HudState): void {
     this.exercise.showState(s);
-    if (s.state === 'done' || s.state === 'failed') {
+    if (isOver(s)) {
       setText(
         this.message,
         s.state === 'done' ? `✓ ${text('Exercise complete')}` : `✗ ${s.message || text('Exercise failed')}`,

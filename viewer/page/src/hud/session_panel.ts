@@ -6,7 +6,7 @@ import type { UserCommand } from './commands';
 import { Dialog } from './dialog';
 import { el } from './dom';
 import type { Metrics } from './metrics';
-import type { HudState } from './state';
+import { type HudState, isOver } from './state';
 import { summaryOf } from './summary';
 import { text } from '../languages/text';
 
@@ -76,8 +76,7 @@ export class SessionPanel {
   show(state: HudState, ready: boolean): void {
     if (state.mode !== 'waiting') this.start.close();
     else if (ready && !this.start.open) this.askStart();
-    const over = state.state === 'done' || state.state === 'failed';
-    if (!over) {
+    if (!isOver(state)) {
       this.shownEnd = '';
       this.metrics.atEnd = false;
       this.end.close();

@@ -55,6 +55,9 @@ export interface HudState {
   tutor: TutorView;
 }
 
+/** Whether the exercise has ended, well or not. */
+export const isOver = ({ state }: Pick<HudState, 'state'>): boolean => state === 'done' || state === 'failed';
+
 const isObject = (v: unknown): v is Json => typeof v === 'object' && v !== null;
 export const list = (v: unknown): Json[] => (Array.isArray(v) ? v.filter(isObject) : []);
 export const text = (v: unknown): string => (v === null || v === undefined ? '' : String(v));
