@@ -62,6 +62,8 @@ function readPanel() {
       done: g.classList.contains('done'),
     })),
     message: text('.message'),
+    /** What the tutor says. */
+    cue: seen(document.querySelector('.cue')) ? text('.cue') : '',
     clockS: text('.clock')
       .split(':')
       .reduce((s, part) => 60 * s + Number(part), 0),

@@ -98,12 +98,22 @@ export class Practice {
     const view = await this.person.look();
     if (view.target?.at !== target.at || view.hand < 0) return view;
     if (view.target.near && /button/.test(view.todo)) return this.press(view);
-    if (/^Stay here/.test(view.todo)) return this.person.settled();
+    if (/^Stay here/.test(view.todo)) return this.stay(view);
     if (/^Sweep/.test(view.todo)) return this.sweepHere();
     if (this.tries > 12) await this.page.keyboard.press('n');
     const after = await this.person.reach(view, this.careful(view));
     if (this.tries === 1) this.tell(after);
     return after;
+  }
+
+  /** Waits for the goal; when the tutor says that the other hand has lost its hold, that one grips again. */
+  async stay(view) {
+    this.tell(view, `, ${view.cue || 'waits'}`);
+    if (!/not held/.test(view.cue)) return this.person.settled();
+    const other = await this.handOver();
+    this.course[other.hand].done = false;
+    for (let k = 0; k < 2; k++) await this.page.keyboard.press('Shift+N');
+    return this.person.settled();
   }
 
   /** Lets the page turn the wrist, and spoils it a little at a new target. */
