@@ -81,7 +81,8 @@ class Ischaemia final : public Constraint {
                                 .max = "300 ml/100g/min",
                                 .shown = Shown::vital,
                                 .display = "ml/100g/min",
-                                .digits = 0}};
+                                .digits = 0,
+                                .good = {.from = "35 ml/100g/min"}}};
   Channel<Duration> time{this,
                          {.name = "time",
                           .doc = "in which the perfusion was below `penumbra`",
@@ -124,7 +125,7 @@ class Ischaemia final : public Constraint {
   void connect(PrepareContext& context, Simulation&) override {
     if (core() > penumbra()) error(context, core, "is above `penumbra`");
     if (infarct() > penumbra()) error(context, infarct, "is above `penumbra`");
-    bands();
+    perfusion.set_bands(perfusion.good(), {penumbra(), {}});
     reset();
   }
   void find_channels(PrepareContext& context, const Simulation& simulation) override {
@@ -171,7 +172,6 @@ class Ischaemia final : public Constraint {
  private:
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-  void bands() { perfusion.set_bands({35e-5 / 60, {}}, {penumbra(), {}}); }
   /// Time to infarction under the perfusion of now, s.
   double lives() const {
     const double f = std::max(0.0, now_);
