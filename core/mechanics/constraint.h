@@ -78,6 +78,9 @@ class Constraint : public Component {
 
   /// Called once, after all components are prepared. Creates what connects bodies. May report errors.
   virtual void connect(PrepareContext&, Simulation&) {}
+  /// Called once, after every component is connected: finds the channels of others that it reads. What it reads in a
+  /// step are the values that were published at the end of the step before. May report errors.
+  virtual void find_channels(PrepareContext&, const Simulation&) {}
   /// Called when the scene has settled (<settle>), before the exercise begins, and again after every reset. May report
   /// errors.
   virtual void settled(PrepareContext&) {}

@@ -32,6 +32,7 @@ constexpr Units<3> area_density{{{"1/m2", 1}, {"1/cm2", 1e4}, {"1/mm2", 1e6}}};
 constexpr Units<2> surface_mass{{{"kg/m2", 1}, {"g/cm2", 10}}};
 constexpr Units<3> foundation_modulus{{{"N/m3", 1}, {"kPa/mm", 1e6}, {"N/mm3", 1e9}}};
 constexpr Units<3> flow_rate{{{"m3/s", 1}, {"ml/s", 1e-6}, {"ml/min", 1e-6 / 60}}};
+constexpr Units<2> perfusion{{{"m3/s/kg", 1}, {"ml/100g/min", 1e-5 / 60}}};
 constexpr Units<4> viscosity{{{"Pa s", 1}, {"mPa s", 1e-3}, {"Pas", 1, false}, {"mPas", 1e-3, false}}};
 constexpr Units<4> impulse{{{"N s", 1}, {"mN s", 1e-3}, {"Ns", 1, false}, {"mNs", 1e-3, false}}};
 constexpr Units<2> force_rate{{{"N/s", 1}, {"mN/s", 1e-3}}};
@@ -59,15 +60,17 @@ std::span<const Unit> AreaDensity::units() { return area_density; }
 std::span<const Unit> SurfaceMass::units() { return surface_mass; }
 std::span<const Unit> FoundationModulus::units() { return foundation_modulus; }
 std::span<const Unit> FlowRate::units() { return flow_rate; }
+std::span<const Unit> Perfusion::units() { return perfusion; }
 std::span<const Unit> Viscosity::units() { return viscosity; }
 std::span<const Unit> Impulse::units() { return impulse; }
 std::span<const Unit> ForceRate::units() { return force_rate; }
 
 bool is_known_unit(std::string_view symbol) {
   const std::span<const Unit> all[] = {
-      length,       area,         volume,       duration,           frequency,         rate,      mass,    density,
-      force,        torque,       pressure,     stiffness,          angular_stiffness, damping,   angle,   speed,
-      acceleration, area_density, surface_mass, foundation_modulus, flow_rate,         viscosity, impulse, force_rate};
+      length,       area,         volume,       duration,           frequency,         rate,      mass,      density,
+      force,        torque,       pressure,     stiffness,          angular_stiffness, damping,   angle,     speed,
+      acceleration, area_density, surface_mass, foundation_modulus, flow_rate,         perfusion, viscosity, impulse,
+      force_rate};
   for (const auto& units : all)
     for (const auto& u : units)
       if (u.symbol == symbol) return true;

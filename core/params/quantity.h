@@ -42,6 +42,7 @@ INSULA_QUANTITY(AreaDensity, "number per area", "1/m2");           // 1/m2 1/cm2
 INSULA_QUANTITY(SurfaceMass, "mass per area", "kg/m2");            // kg/m2 g/cm2
 INSULA_QUANTITY(FoundationModulus, "foundation modulus", "N/m3");  // N/m3 kPa/mm N/mm3
 INSULA_QUANTITY(FlowRate, "flow rate", "m3/s");                    // m3/s ml/s ml/min
+INSULA_QUANTITY(Perfusion, "perfusion", "m3/s/kg");                // m3/s/kg ml/100g/min
 INSULA_QUANTITY(Viscosity, "viscosity", "Pa s");                   // Pa s, mPa s
 INSULA_QUANTITY(Impulse, "impulse", "N s");                        // N s mN s
 INSULA_QUANTITY(ForceRate, "rate of force", "N/s");                // N/s mN/s

@@ -79,6 +79,8 @@ const UnitCase every_unit[] = {
     {FlowRate::units(), "2 m3/s", 2},
     {FlowRate::units(), "2 ml/s", 2e-6},
     {FlowRate::units(), "60 ml/min", 1e-6},
+    {Perfusion::units(), "2 m3/s/kg", 2},
+    {Perfusion::units(), "60 ml/100g/min", 1e-5},
     {Viscosity::units(), "2 Pa s", 2},
     {Viscosity::units(), "3.5 mPa s", 3.5e-3},
     {Viscosity::units(), "2 Pas", 2},
@@ -116,6 +118,7 @@ TEST(Quantity, EveryListedUnitIsCoveredAndPositive) {
                            SurfaceMass::units(),
                            FoundationModulus::units(),
                            FlowRate::units(),
+                           Perfusion::units(),
                            Viscosity::units()}) {
     ASSERT_FALSE(units.empty());
     EXPECT_EQ(units.front().to_si, 1.0) << units.front().symbol;

@@ -57,6 +57,7 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
     for (Constraint* c : constraints_) c->connect(prepare, *this);
     for (Instrument* i : instruments_) i->join(prepare, *this);
     collect_step_data();
+    for (Constraint* c : constraints_) c->find_channels(prepare, *this);
     if (auto e = scene_->all<Exercise>(); !e.empty()) {
       exercise_ = e.front();
       exercise_->connect(prepare, *this);
