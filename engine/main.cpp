@@ -15,6 +15,7 @@
 #include "engine/command_line/run.h"
 #include "engine/command_line/run_command_line.h"
 #include "engine/command_line/sessions.h"
+#include "engine/command_line/studio_command.h"
 #include "engine/command_line/tool_program.h"
 #include "training/store/data_folder.h"
 
@@ -288,6 +289,7 @@ void add_commands(Options& c) {
   add_play(c);
   add_view(c);
   insula::add_room_command(c);
+  insula::add_studio_command(c);
   add_tool_programs(c);
 }
 

@@ -25,10 +25,11 @@ void add_case_commands(CommandLine& line) {
   auto* pack = add("pack", "write a case as one file, with all that its exercises need", cmd_cases_pack);
   pack->add_option("name", o->name, "of the case")->required();
   pack->add_option("-o,--output", o->file, "the file (default: NAME.zip)");
-  add("add", "add a case that was packed; it then stands on the start page", cmd_cases_add)
-      ->add_option("file", o->file, "NAME.zip")
+  auto* added = add("add", "add a case that was packed or built; it then stands on the start page", cmd_cases_add);
+  added->add_option("file", o->file, "NAME.zip, or the folder that insula case made")
       ->required()
-      ->check(CLI::ExistingFile);
+      ->check(CLI::ExistingPath);
+  added->add_flag("--replace", o->replace, "in place of an added case of the same name");
   add("remove", "remove a case that was added", cmd_cases_remove)
       ->add_option("name", o->name, "of the case")
       ->required();

@@ -14,14 +14,16 @@ struct CasesOptions {
   std::filesystem::path data;  ///< folder of the user's data; empty: the platform's
   bool json = false;
   std::string name;            ///< of a case
-  std::filesystem::path file;  ///< archive, or folder of a page
+  std::filesystem::path file;  ///< archive, folder of a built case, or folder of a page
+  bool replace = false;        ///< an added case of the same name
 };
 
 /// Lists all cases. Status 0.
 int cmd_cases(const CommandContext& context, const CasesOptions& options);
 /// Packs a case of the list. Status 0; 2 if there is none of that name or it cannot be packed.
 int cmd_cases_pack(const CommandContext& context, const CasesOptions& options);
-/// Adds a packed case. All of its scenes must load. Status 0; 2 if it is refused, and then nothing has changed.
+/// Adds a packed case, or the folder of a built one. All of its scenes must load. Status 0; 2 if it is refused, and
+/// then nothing has changed.
 int cmd_cases_add(const CommandContext& context, const CasesOptions& options);
 /// Removes an added case. Status 0; 2 if there is none of that name.
 int cmd_cases_remove(const CommandContext& context, const CasesOptions& options);

@@ -54,6 +54,22 @@ TEST_F(CasesCommand, ACaseIsAddedListedAndRemoved) {
   EXPECT_TRUE(fs::exists(options_.data / "cases"));
 }
 
+TEST_F(CasesCommand, TheFolderOfABuiltCaseIsAdded) {
+  folder_.write("tip/1_a.xml", R"(<scene><exercise title="Tip" text="Look."/></scene>)");
+  options_.file = folder_.path() / "tip";
+  ASSERT_EQ(run(cmd_cases_add), 0) << err_.str();
+  EXPECT_EQ(run(cmd_cases_add), 2) << "it is there already";
+  options_.replace = true;
+  folder_.write("tip/2_b.xml", R"(<scene><exercise title="More" text="Look."/></scene>)");
+  ASSERT_EQ(run(cmd_cases_add), 0) << err_.str();
+  ASSERT_EQ(run(cmd_cases), 0);
+  EXPECT_NE(out_.str().find("2 exercises, added"), std::string::npos);
+  folder_.write("tip/2_b.xml", R"(<scene><exercise title="More" textt="Look."/></scene>)");
+  EXPECT_EQ(run(cmd_cases_add), 2);
+  ASSERT_EQ(run(cmd_cases), 0);
+  EXPECT_NE(out_.str().find("2 exercises, added"), std::string::npos) << "the one before stays";
+}
+
 TEST_F(CasesCommand, ASceneWithErrorsIsNotAdded) {
   options_.file = packed("broken", R"(<scene><exercise textt="Look."/></scene>)");
   EXPECT_EQ(run(cmd_cases_add), 2);

@@ -37,6 +37,56 @@ void check_scenes(const CommandContext& context, const std::vector<fs::path>& sc
   }
 }
 
+/// What is to be added, as an archive: the given one, or one of the given folder, which goes at the end.
+class Packed {
+ public:
+  Packed(const fs::path& given, const fs::path& beside) : archive_(given), name_(given.stem().string()) {
+    if (!fs::is_directory(given)) return;
+    const ListedCase c = built_case(given);
+    fs::create_directories(beside);
+    archive_ = made_ = beside / ("." + c.name + ".zip");
+    name_ = c.name;
+    pack_listed(c, project_folder(), archive_);
+  }
+  ~Packed() {
+    std::error_code ignored;
+    if (!made_.empty()) fs::remove(made_, ignored);
+  }
+  Packed(const Packed&) = delete;
+  Packed& operator=(const Packed&) = delete;
+  const fs::path& archive() const { return archive_; }
+  const std::string& name() const { return name_; }
+
+ private:
+  fs::path archive_, made_;
+  std::string name_;
+};
+
+/// A case of the same name, out of the way. It comes back if there is none of its name at the end.
+class Replaced {
+ public:
+  /// place: empty: nothing is replaced.
+  explicit Replaced(const fs::path& place)
+      : place_(place), kept_(place.parent_path() / ("." + place.filename().string() + ".before")) {
+    if (place_.empty()) return;
+    if (fs::exists(place_)) {
+      fs::remove_all(kept_);
+      fs::rename(place_, kept_);
+    }
+  }
+  ~Replaced() {
+    std::error_code ignored;
+    if (place_.empty()) return;
+    if (fs::exists(place_, ignored)) fs::remove_all(kept_, ignored);
+    else fs::rename(kept_, place_, ignored);
+  }
+  Replaced(const Replaced&) = delete;
+  Replaced& operator=(const Replaced&) = delete;
+
+ private:
+  fs::path place_, kept_;
+};
+
 std::vector<fs::path> scenes_of(const ListedCase& c) {
   std::vector<fs::path> out;
   for (const CatalogueEntry& e : c.exercises) out.push_back(project_folder() / e.scene);
@@ -78,7 +128,9 @@ int cmd_cases_pack(const CommandContext& context, const CasesOptions& o) {
 int cmd_cases_add(const CommandContext& context, const CasesOptions& o) {
   return refusing(context, [&] {
     const fs::path folder = added_cases_folder(o.data);
-    const PackedCase packed = unpack_case(o.file, folder);
+    const Packed given(o.file, folder);
+    const Replaced before(o.replace ? folder / given.name() : fs::path());
+    const PackedCase packed = unpack_case(given.archive(), folder);
     std::vector<fs::path> scenes;
     for (const std::string& scene : packed.scenes) scenes.push_back(folder / packed.name / scene);
     try {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/child_process.h"
 #include "engine/command_line/play.h"
-#include "engine/live/child_process.h"
 
 namespace insula {
 

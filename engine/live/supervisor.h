@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/live/child_process.h"
+#include "core/base/child_process.h"
 
 namespace insula {
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "core/base/child_process.h"
 #include "core/base/input_error.h"
-#include "engine/live/child_process.h"
 
 namespace insula {
 namespace {

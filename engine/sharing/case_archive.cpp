@@ -181,12 +181,6 @@ class Incoming {
 
 }  // namespace
 
-bool is_case_name(const std::string& name) {
-  return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  });
-}
-
 PackedCase pack_case(const std::string& name, const std::vector<fs::path>& scenes, const std::vector<fs::path>& more,
                      const fs::path& archive) {
   if (!is_case_name(name)) throw InputError("\"" + name + "\" is no name of a case: letters, digits, _ and -");

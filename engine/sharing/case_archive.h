@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/case_name.h"
+
 namespace insula {
 
 /// The list of contents in the archive and in an unpacked case:
@@ -31,8 +33,5 @@ PackedCase pack_case(const std::string& name, const std::vector<std::filesystem:
 
 /// Unpacks into folder/NAME, which must not be there. Throws InputError, and then leaves nothing behind.
 PackedCase unpack_case(const std::filesystem::path& archive, const std::filesystem::path& folder);
-
-/// Letters, digits, _ and -, at most 64.
-bool is_case_name(const std::string& name);
 
 }  // namespace insula

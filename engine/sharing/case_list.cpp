@@ -61,6 +61,23 @@ std::vector<CatalogueEntry> added_exercises(const fs::path& data) {
   return out;
 }
 
+ListedCase built_case(const fs::path& given) {
+  const fs::path folder = fs::weakly_canonical(given);
+  ListedCase out{folder.filename().string(), folder, false, {}, read_report(folder)};
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (it->path().extension() != ".xml") continue;
+    if (auto entry = catalogue_entry(it->path())) {
+      entry->scene = it->path().string();
+      out.exercises.push_back(std::move(*entry));
+    }
+  }
+  if (out.exercises.empty()) throw InputError(folder.string() + ": no exercise is in this folder");
+  std::sort(out.exercises.begin(), out.exercises.end(),
+            [](const CatalogueEntry& a, const CatalogueEntry& b) { return a.scene < b.scene; });
+  return out;
+}
+
 std::vector<ListedCase> list_cases(const fs::path& project, const fs::path& data) {
   std::map<std::string, ListedCase> cases;
   for (CatalogueEntry& e : catalogue(project)) {

@@ -28,6 +28,9 @@ struct ListedCase {
 /// By name. project: the folder with scenes/. A scene in scenes/cases is a case, and so is a folder of scenes there.
 std::vector<ListedCase> list_cases(const std::filesystem::path& project, const std::filesystem::path& data);
 
+/// The case of a folder that the case builder wrote, named as the folder. Throws InputError if it has no exercise.
+ListedCase built_case(const std::filesystem::path& folder);
+
 /// Exercises of the added cases, for the start page. Scenes are absolute paths.
 std::vector<CatalogueEntry> added_exercises(const std::filesystem::path& data);
 

@@ -19,6 +19,7 @@ FIXTURES = {
     "docs/arteries.md": ("patient.stl",),
     "docs/devices.md": ("arms",),
     "docs/making-a-case.md": ("vessel.stl", "vessel_cm.stl", "labels.nii.gz"),
+    "docs/studio.md": ("vessel.stl",),
     "docs/writing-a-plugin.md": ("tether.so",),
 }
 
@@ -115,6 +116,12 @@ FORMS = (
         r"build/release/bin/insula_artery make tools/artery/arteries.json meshes/arteries",
         "ArteryTool.ShippedArteriesAreMadeAgainBitForBit",
         "makes all of the table",
+    ),
+    Elsewhere(r"\./insula studio", "StudioTest.ACaseIsBuilt", "the browser test `studio` uses the page"),
+    Elsewhere(
+        r"\./insula cases add scenes/cases/my_case --replace",
+        "CasesCommand.TheFolderOfABuiltCaseIsAdded",
+        "needs a built case",
     ),
     Elsewhere(r"\./insula case new from_scan .*", "Volumes.ADicomSeriesIsReadByItsThreshold", "makes a series to read"),
     Elsewhere(

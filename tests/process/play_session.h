@@ -16,8 +16,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/base/child_process.h"
 #include "core/testing/multicast.h"
-#include "engine/live/child_process.h"
 #include "tests/process/watcher.h"
 
 namespace insula::testing {

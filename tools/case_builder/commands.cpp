@@ -10,6 +10,7 @@
 #include "core/sim/exercise.h"
 #include "engine/sharing/case_archive.h"
 #include "tools/case_builder/brain.h"
+#include "tools/case_builder/inspect.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/place.h"
 #include "tools/case_builder/project.h"
@@ -27,6 +28,7 @@ constexpr const char* stages[] = {"intake", "wall", "brain", "place", "scenes", 
 struct Line {
   std::string stage, name, input, folder, out;
   bool on = false;
+  bool inspect = false;  ///< a look at the input, no case
 };
 
 // Options whose values have a unit. joined_values() joins the words of such a value.
@@ -204,6 +206,12 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
   fresh->add_option("--out", line.out, "folder that gets the case's folder (default: scenes/cases of the project)");
   intake_options(fresh, o), wall_options(fresh, o), brain_options(fresh, o), place_options(fresh, o),
       scene_options(fresh, o);
+  auto* look = app.add_subcommand(
+      "inspect", "tell what a file holds and where the neck may be, as JSON, before a case is made of it");
+  look->add_option("input", line.input, "file, or folder of a DICOM series")->required();
+  look->add_option("--out", line.out, "folder that gets inspect.json and surface.ply, in place of the print");
+  intake_options(look, o);
+  look->callback([&line] { line.inspect = true; });
   for (const char* stage : stages) {
     auto* again = app.add_subcommand(
         stage, std::string("do the stage ") + stage + " of a case again, from what the one before wrote");
@@ -252,6 +260,10 @@ int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::
   try {
     if (const int status = parse(arguments, line, o, out, err)) return status < 0 ? 0 : status;
     Progress progress(err);
+    if (line.inspect) {
+      run_inspect(line.input, line.out, o, out, progress);
+      return 0;
+    }
     CaseFolder folder;
     if (line.stage.empty()) {
       if (!is_case_name(line.name))

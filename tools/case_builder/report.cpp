@@ -42,25 +42,34 @@ double extent(const TriMesh& m, Vec3& centre) {
   return 0.55 * (high - low).norm();
 }
 
-std::string pictures(const artery::Vessel& v, const CaseFolder& folder) {
+struct Picture {
+  std::string file, caption, svg;
+};
+
+std::vector<Picture> pictures(const artery::Vessel& v, const CaseFolder& folder) {
   Vec3 centre;
   const double radius = extent(v.wall.mesh, centre);
   const artery::Neck& neck = *v.neck;
   const Drawn plane{disc(neck.centre, neck.normal, 0.8 * neck.diameter), {{250, 250, 250}}, 0.35, true};
   const Vec3 side = neck.normal.unitOrthogonal();
-  std::string s = "<div class=\"row\">";
-  s += "<figure>" + svg_picture({drawn_regions(v), plane}, side, neck.normal, centre, radius, 330) +
-       "<figcaption>regions and the neck's plane, from the side</figcaption></figure>";
-  s += "<figure>" + svg_picture({drawn_regions(v), plane}, neck.normal.cross(side), neck.normal, centre, radius, 330) +
-       "<figcaption>turned by 90 degrees</figcaption></figure>";
+  const auto of_wall = [&](const Vec3& from) {
+    return svg_picture({drawn_regions(v), plane}, from, neck.normal, centre, radius, 330);
+  };
   std::vector<Drawn> field{drawn_regions(v)};
   for (const auto& [name, colour] : {std::pair("frontal", std::array<int, 3>{214, 160, 150}),
                                      std::pair("temporal", std::array<int, 3>{200, 140, 140}),
                                      std::pair("insula", std::array<int, 3>{170, 120, 120})})
     field.push_back({read_ply(folder.lobes() / (std::string(name) + "_surface.ply")), {colour}, 0.5, false});
-  s += "<figure>" + svg_picture(field, to_surgeon, Vec3(0, 0, 1), neck.centre, 18, 330) +
-       "<figcaption>in the fissure, from the surgeon's side (lobes half transparent)</figcaption></figure></div>\n";
-  return s;
+  return {{"report_side.svg", "regions and the neck's plane, from the side", of_wall(side)},
+          {"report_front.svg", "turned by 90 degrees", of_wall(neck.normal.cross(side))},
+          {"report_fissure.svg", "in the fissure, from the surgeon's side (lobes half transparent)",
+           svg_picture(field, to_surgeon, Vec3(0, 0, 1), neck.centre, 18, 330)}};
+}
+
+std::string row_of(const std::vector<Picture>& all) {
+  std::string s = "<div class=\"row\">";
+  for (const Picture& p : all) s += "<figure>" + p.svg + "<figcaption>" + p.caption + "</figcaption></figure>";
+  return s + "</div>\n";
 }
 
 std::string head_of(const CaseFolder& folder) {
@@ -138,7 +147,9 @@ void run_report(const CaseFolder& folder, const Options& options, Progress& prog
   if (fs::exists(folder.path / "brain.json")) sections.push_back(brain_findings(read_json(folder.path / "brain.json")));
   sections.push_back(fissure_findings(place));
   sections.push_back(exercise_findings(scenes, exercises, clipping));
-  std::string html = head_of(folder) + pictures(v, folder);
+  const std::vector<Picture> drawn = pictures(v, folder);
+  for (const Picture& p : drawn) write_text(folder.path / p.file, p.svg);
+  std::string html = head_of(folder) + row_of(drawn);
   for (const FindingSection& s : sections) html += table_of(s);
   write_text(folder.path / "report.html", html + "</html>\n");
   write_json(folder.path / "report.json", for_programs(v, wall, place, scenes, exercises, sections));

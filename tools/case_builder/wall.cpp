@@ -172,9 +172,6 @@ std::vector<WallOf> walls_of(const Vessel& v) {
   return out;
 }
 
-namespace {
-
-/// For the report: how sure the neck is, and every proposal as an option in the frame of the author's files.
 Json neck_json(const Vessel& v, bool mirrored) {
   Json out;
   out["confidence"] = rounded(artery::neck_confidence(v.proposals));
@@ -186,13 +183,19 @@ Json neck_json(const Vessel& v, bool mirrored) {
                                 {"diameter_mm", rounded(p.diameter)},
                                 {"agreement", rounded(p.agreement)},
                                 {"planar", p.planar},
+                                {"centre", to_json(c)},
+                                {"normal", to_json(n)},
                                 {"option", fmt::format("{:.2f} {:.2f} {:.2f} mm {:.3f} {:.3f} {:.3f}", c.x(), c.y(),
                                                        c.z(), n.x(), n.y(), n.z())}});
   }
   return out;
 }
 
-}  // namespace
+Vessel with_proposals(const artery::Surface& surface, const Options& o) {
+  artery::ImportOptions options;
+  options.vertices = o.vertices;
+  return made(with_inlet_first(surface, o), options);
+}
 
 void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
   progress.stage("wall", 5);

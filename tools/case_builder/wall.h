@@ -19,6 +19,11 @@ struct WallOf {
 artery::Vessel make_wall(const artery::Surface& surface, const Options& options, std::vector<Note>& notes,
                          Progress& progress);
 
+/// The vessel with the necks that are proposed for it, as make_wall() begins. Throws InputError.
+artery::Vessel with_proposals(const artery::Surface& surface, const Options& options);
+/// How sure the neck is, and every proposal, in the frame of the author's files.
+Json neck_json(const artery::Vessel& vessel, bool mirrored);
+
 /// Thickness as of real walls; the sac as stiff as lets it change its volume by some 6 % over a beat, whatever its
 /// size.
 std::vector<WallOf> walls_of(const artery::Vessel& vessel);

@@ -49,6 +49,7 @@ struct Gateway::Impl {
   tcp::acceptor acceptor{io};
   asio::steady_timer retry{io};
   asio::steady_timer repeat{io};
+  asio::steady_timer studio_look{io};
   Hub hub;
   Station station{options.station, options.training.choice};
   ServiceDiscovery discovery;
@@ -58,8 +59,9 @@ struct Gateway::Impl {
                            logins.set_secrets(secrets);
                            room.set_key(secrets.key);
                          }};
-  Site site{hub,   hosts,           page,    sessions, training,   logins, login_api,
-            audit, options.is_here, station, room,     room_access};
+  Studio studio{options.studio};
+  Site site{hub,   hosts,           page,    sessions, training,    logins, login_api,
+            audit, options.is_here, station, room,     room_access, studio};
   std::atomic<bool> stopping{false};
   std::thread network, bus_thread;
   std::uint16_t port = 0;
@@ -69,6 +71,7 @@ struct Gateway::Impl {
   void announce();
   void accept();
   void repeat_hands();
+  void look_after_studio();
 };
 
 std::string Gateway::Impl::open() {
@@ -129,6 +132,15 @@ void Gateway::Impl::repeat_hands() {
   });
 }
 
+void Gateway::Impl::look_after_studio() {
+  studio_look.expires_after(std::chrono::milliseconds(100));
+  studio_look.async_wait([this](boost::system::error_code error) {
+    if (error || stopping) return;
+    studio.look();
+    look_after_studio();
+  });
+}
+
 Gateway::Gateway(Bus& bus, Options options) : impl_(std::make_unique<Impl>(bus, std::move(options))) {}
 
 Gateway::~Gateway() { stop(); }
@@ -140,6 +152,7 @@ std::string Gateway::start() {
   impl_->announce();
   impl_->accept();
   impl_->repeat_hands();
+  if (impl_->studio.offered()) impl_->look_after_studio();
   impl_->network = std::thread([this] { impl_->io.run(); });
   impl_->bus_thread = std::thread([this] {
     while (!impl_->stopping) impl_->hub.poll(50);

@@ -13,6 +13,7 @@
 #include "viewer/gateway/access.h"
 #include "viewer/gateway/secrets.h"
 #include "viewer/gateway/station_list.h"
+#include "viewer/gateway/studio.h"
 #include "viewer/gateway/tls.h"
 #include "viewer/gateway/training_api.h"
 
@@ -36,6 +37,7 @@ struct Options {
   std::vector<StationAddress> stations;              ///< of the room, for the overview
   std::filesystem::path kept_stations;               ///< JSON of those that pages add to it; empty: they add none
   std::filesystem::path kept_key;                    ///< file for a key that pages make or give; empty: they do not
+  StudioPlaces studio;                               ///< of the page of the case builder
   bool discovery = true;          ///< announces the station where others reach it, and finds others for the overview
   IsHere is_here = same_machine;  ///< tells pages on this machine from others
 };

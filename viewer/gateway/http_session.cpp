@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <boost/beast/websocket.hpp>
 #include <fstream>
+#include <limits>
 #include <type_traits>
 
 #include "core/base/text.h"
@@ -18,9 +19,12 @@ namespace insula::gateway {
 namespace {
 
 constexpr auto request_timeout = std::chrono::seconds(30);
+constexpr auto upload_timeout = std::chrono::minutes(5);
 constexpr std::uint32_t header_limit = 16 * 1024;
 /// A part that takes longer to read would delay pictures. A page asks again for the rest.
 constexpr std::uint64_t most_part_bytes = 4 << 20;
+/// Reports and pictures of a case come from its author's file: nothing in them may run or load.
+constexpr const char* file_policy = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 constexpr std::string_view not_built =
     "<!doctype html><meta charset=utf-8><title>Insula</title><p>The viewer's page is not built. "
     "Run <code>npm ci &amp;&amp; npm run build</code> in <code>viewer/page</code>, then start again.</p>\n";
@@ -45,10 +49,36 @@ void HttpSession::start() {
 void HttpSession::read() {
   parser_.emplace();
   parser_->header_limit(header_limit);
-  parser_->body_limit(Sessions::most_notes_bytes);
+  parser_->body_limit(std::numeric_limits<std::uint64_t>::max());  // it depends on what is asked for
   stream_.next_layer().expires_after(request_timeout);
+  http::async_read_header(stream_, in_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+    self->on_header(error);
+  });
+}
+
+bool HttpSession::is_upload(const http::request_header<>& request) {
+  const std::string_view target = view(request.target());
+  return request.method() == http::verb::put && target.substr(0, target.find('?')) == "/api/studio/upload";
+}
+
+/// Only those who may use the page of the case builder can send a large body, and none of it is read before that is
+/// known.
+void HttpSession::on_header(beast::error_code error) {
+  if (error) return close();
+  const Request head{parser_->get().base()};
+  if (parser_->content_length().value_or(0) > Sessions::most_notes_bytes && !is_upload(head)) return close();
+  if (is_upload(head)) {
+    if (refuse_foreign(head)) return;
+    visitor_ = visitor_of(head);
+    if (!site_.studio.offered() || visitor_.access < Access::instructor || !same_site(head))
+      return send_error(head, http::status::forbidden, "only for pages on this machine and instructors");
+    if (parser_->content_length().value_or(0) > Studio::most_upload_bytes)
+      return send_error(head, http::status::payload_too_large, "this file is too large: 220 MB are taken");
+    stream_.next_layer().expires_after(upload_timeout);
+  }
+  parser_->body_limit(is_upload(head) ? Studio::most_upload_bytes : Sessions::most_notes_bytes);
   http::async_read(stream_, in_, *parser_,
-                   [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_read(error); });
+                   [self = shared_from_this()](beast::error_code e, std::size_t) { self->on_read(e); });
 }
 
 void HttpSession::on_read(beast::error_code error) {
@@ -186,6 +216,32 @@ void HttpSession::answer_training(const Request& request, const std::vector<std:
   send_text(request, http::status(answer.status), "application/json", answer.json);
 }
 
+/// /api/studio/NAME. The page of the case builder is for this machine and for instructors. Sessions are started here,
+/// so that only this machine's pages play.
+void HttpSession::answer_studio(const Request& request, const std::vector<std::string>& parts) {
+  const auto refuse = [&](http::status status, std::string_view why) { send_error(request, status, why); };
+  if (!site_.studio.offered()) return refuse(http::status::not_found, "start the case builder's page: insula studio");
+  if (visitor_.access < Access::instructor)
+    return refuse(http::status::forbidden, "only for pages on this machine and instructors");
+  if (parts.size() != 3) return refuse(http::status::not_found, "not found");
+  const std::string_view target = view(request.target());
+  const std::string_view query = target.substr(std::min(target.find('?'), target.size() - 1) + 1);
+  const bool changes = request.method() == http::verb::post || request.method() == http::verb::put;
+  if (changes && !same_site(request)) return refuse(http::status::forbidden, "foreign origin");
+  if (parts[2] == "play" && visitor_.access != Access::here)
+    return refuse(http::status::forbidden, "exercises are played at the machine of the case builder");
+  ApiAnswer answer;
+  if (is_upload(request)) answer = site_.studio.upload(query, request.body());
+  else if (request.method() == http::verb::post) answer = site_.studio.post(parts[2], request.body());
+  else if (const auto file = site_.studio.file(parts[2], query)) return send_file(request, *file, "no-store");
+  else answer = site_.studio.get(parts[2], query);
+  if (changes)
+    site_.audit.write({visitor_.address, std::string(name_of(visitor_.access)), 0,
+                       "studio " + parts[2] + " " + (is_upload(request) ? std::string(query) : request.body()),
+                       answer.status < 300, answer.status < 300 ? "" : answer.json, visitor_.who});
+  send_text(request, http::status(answer.status), "application/json", answer.json);
+}
+
 void HttpSession::answer(const Request& request) {
   auto parts = split_target(view(request.target()));
   const bool session = parts && parts->front() == "sessions";
@@ -194,6 +250,7 @@ void HttpSession::answer(const Request& request) {
     return answer_login(request, parts->back() == "logout");
   if (training && parts->size() >= 2 && ((*parts)[1] == "station" || (*parts)[1] == "room" || (*parts)[1] == "ticket"))
     return answer_room(request, *parts);
+  if (training && parts->size() >= 2 && (*parts)[1] == "studio") return answer_studio(request, *parts);
   if (training && request.method() == http::verb::post) return answer_training(request, *parts);
   if (session && request.method() == http::verb::put) return answer_session(request, *parts);
   if (request.method() != http::verb::get && request.method() != http::verb::head)
@@ -210,7 +267,11 @@ void HttpSession::answer(const Request& request) {
     return file ? send_file(request, *file, "no-store") : not_found();
   }
   // A query belongs to the exercise's page: "/?role=instructor".
-  if (parts->back().empty()) parts->back() = site_.page.start && request.target() == "/" ? "start.html" : "index.html";
+  if (parts->back().empty())
+    parts->back() = request.target() != "/"  ? "index.html"
+                    : site_.studio.offered() ? "studio.html"
+                    : site_.page.start       ? "start.html"
+                                             : "index.html";
   const auto file = site_.page.folder.empty() ? std::nullopt : file_below(site_.page.folder, *parts);
   if (file) {
     // Built assets carry a hash in their name; everything else must be asked for again.
@@ -261,6 +322,7 @@ void HttpSession::send_file(const Request& request, const std::filesystem::path&
     response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
     response.set(http::field::cache_control, beast::string_view(caching.data(), caching.size()));
     response.set("X-Content-Type-Options", "nosniff");
+    if (request.target().starts_with("/api/studio/")) response.set("Content-Security-Policy", file_policy);
     response.keep_alive(request.keep_alive());
   };
   if (request.method() == http::verb::head) {

@@ -25,6 +25,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
  private:
   using Request = http::request<http::string_body>;
   void read();
+  void on_header(beast::error_code error);
+  static bool is_upload(const http::request_header<>& request);
   void on_read(beast::error_code error);
   static bool same_site(const Request& request);
   bool refuse_foreign(const Request& request);
@@ -39,6 +41,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void take_picture(const Request& request);
   void give_ticket(const Request& request);
   void answer_training(const Request& request, const std::vector<std::string>& parts);
+  void answer_studio(const Request& request, const std::vector<std::string>& parts);
   void answer_session(const Request& request, const std::vector<std::string>& parts);
   bool from_this_machine() const;
   /// {"error": why}; why: without quotes and backslashes.

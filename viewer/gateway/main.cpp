@@ -56,10 +56,10 @@ void read_access(Options& options, const Places& places) {
   if (places.self_made) options.tls = insula::gateway::self_made_certificate(places.own, options.hosts);
 }
 
-int serve(const Options& options) {
+int serve(const Options& options, const std::string& address_of_bus) {
   const insula::SignalPipe ends{SIGINT, SIGTERM, SIGHUP};
   signal(SIGPIPE, SIG_IGN);
-  const auto bus = insula::make_bus();
+  const auto bus = insula::make_bus(address_of_bus);
   if (!bus->good()) {
     fmt::print(stderr, "{}\n", bus->error());
     return 1;
@@ -96,6 +96,8 @@ int main(int argc, char** argv) {
   Options options;
   Places places;
   bool exact = false;
+  std::string address_of_bus;
+  app.add_option("--bus", address_of_bus, "address of the bus; memq:// is one of its own (default: LCM_DEFAULT_URL)");
   app.add_option("--page", options.page, "folder with the built page (index.html)");
   app.add_option("--port", options.port, "port to listen on; following ones are tried when it is busy; 0: any")
       ->capture_default_str();
@@ -110,6 +112,7 @@ int main(int argc, char** argv) {
   app.add_option("--catalogue", options.training.catalogue, "JSON of the exercises that pages may choose from");
   app.add_option("--choice", options.training.choice, "JSON of the running exercise");
   app.add_option("--curricula", options.training.curricula, "JSON of the curricula that persons may follow");
+  app.add_option("--studio", options.studio.data, "folder of the user's data: offers the page of the case builder");
   app.add_flag("--start", options.start, "begin with the start page");
   add_access_options(app, options, places);
   CLI11_PARSE(app, argc, argv);
@@ -122,12 +125,13 @@ int main(int argc, char** argv) {
     fmt::print("curricula\n");
     std::fflush(stdout);
   };
+  options.studio.programs = fs::read_symlink("/proc/self/exe").parent_path();
   if (exact) options.more_ports = 0;
   if (options.page.empty()) options.page = insula::gateway::find_page();
 
   try {
     read_access(options, places);
-    return serve(options);
+    return serve(options, address_of_bus);
   } catch (const insula::InputError& e) {
     fmt::print(stderr, "error: {}\n", e.what());
     return 2;

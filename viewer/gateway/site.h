@@ -12,6 +12,7 @@
 #include "viewer/gateway/room_access.h"
 #include "viewer/gateway/sessions.h"
 #include "viewer/gateway/station.h"
+#include "viewer/gateway/studio.h"
 #include "viewer/gateway/training_api.h"
 
 namespace insula::gateway {
@@ -35,6 +36,7 @@ struct Site {
   Station& station;
   Room& room;
   RoomAccess& room_access;
+  Studio& studio;
 };
 
 }  // namespace insula::gateway

@@ -11,7 +11,7 @@ export default defineConfig({
     chunkSizeWarningLimit: 1500,
     reportCompressedSize: false,
     rollupOptions: {
-      input: ['index.html', 'replay.html', 'start.html', 'login.html', 'room.html', 'certificate.html'],
+      input: ['index.html', 'replay.html', 'start.html', 'login.html', 'room.html', 'studio.html', 'certificate.html'],
     },
   },
   server: {

@@ -25,6 +25,7 @@ const checks = [
   'access',
   'keyboard',
   'certificate',
+  'studio',
   'firefox',
   'sound_firefox',
 ];

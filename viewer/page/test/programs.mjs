@@ -15,6 +15,7 @@ export const ownBus = (first = 0) => `udpm://239.255.76.67:${20000 + ((process.p
 export class Programs {
   #children = [];
   #ended = false;
+  #mayEnd = new Set();
 
   constructor() {
     if (existsSync(gatewayProgram)) return;
@@ -29,15 +30,20 @@ export class Programs {
     return child;
   }
 
+  /** Its end is no fault of this machine. */
+  mayEnd(child) {
+    this.#mayEnd.add(child);
+  }
+
   /** The address that a gateway prints. */
   async gateway(words, bus) {
-    return (await this.#told(this.start('gateway', ['--port', '0', ...words], bus), /serving (\S+)/)).address;
+    return (await this.told(this.start('gateway', ['--port', '0', ...words], bus), /serving (\S+)/)).address;
   }
 
   /** Engine, haptic server and gateway, with their data in that folder: the address, and all that was printed. */
   play(data, words, bus) {
     const still = ['--no-browser', '--no-reload', '--port', '0', '--data', data];
-    return this.#told(this.start('insula', ['play', ...still, ...words], bus), /viewer at (\S+)/);
+    return this.told(this.start('insula', ['play', ...still, ...words], bus), /viewer at (\S+)/);
   }
 
   /** What `insula` prints; it must succeed. */
@@ -47,7 +53,8 @@ export class Programs {
     return stdout;
   }
 
-  #told(child, pattern) {
+  /** What it says up to that pattern, and the pattern's first group. */
+  told(child, pattern) {
     return new Promise((resolve) => {
       let said = '';
       for (const out of [child.stdout, child.stderr])
@@ -57,7 +64,7 @@ export class Programs {
           if (found) resolve({ address: found[1], said });
         });
       child.once('exit', (status) => {
-        if (this.#ended) return;
+        if (this.#ended || this.#mayEnd.has(child)) return;
         console.log(`skipped: ${child.spawnfile} ended with ${status}: ${said}`);
         process.exit(77);
       });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // fork, exec, pipes and waits.
-#include "engine/live/child_process.h"
+#include "core/base/child_process.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

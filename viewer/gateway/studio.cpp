@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viewer/gateway/studio.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "core/base/input_error.h"
+#include "viewer/gateway/json_input.h"
+#include "viewer/gateway/studio_choices.h"
+#include "viewer/gateway/surface_kind.h"
+#include "viewer/gateway/training_api.h"
+
+namespace insula::gateway {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::json;
+using Kind = StudioJob::Kind;
+
+constexpr auto inspect_limit = std::chrono::minutes(5);
+constexpr auto build_limit = std::chrono::hours(2);
+constexpr const char* found_in = "inspect";
+constexpr const char* damaged = "the project's description is damaged";
+
+std::string state_of(const StudioProject& p, const char* what) {
+  return p.work.contains(what) ? text_of(p.work[what], "state") : std::string();
+}
+
+/// As a word of a shell.
+std::string quoted(const std::string& word) { return word.find(' ') == std::string::npos ? word : "\"" + word + "\""; }
+
+std::string command_line(const StudioProject& p) {
+  std::string out = "insula case new " + p.name + " " + quoted(p.file);
+  for (const std::string& word : case_words(p.choices())) out += " " + quoted(word);
+  return out;
+}
+
+std::vector<std::string> exercises_in(const fs::path& folder) {
+  std::vector<std::string> out;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (it->path().extension() == ".xml" && name.size() > 2 && name[0] >= '1' && name[0] <= '9' && name[1] == '_')
+      out.push_back(name);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace
+
+Studio::Studio(const StudioPlaces& places)
+    : places_(places), projects_(places.data / "studio"), player_(places.programs / "insula", places.data) {}
+
+const StudioJob* Studio::job(const std::string& name, Kind kind) const {
+  const auto it = jobs_.find(name);
+  return it != jobs_.end() && it->second->kind() == kind ? it->second.get() : nullptr;
+}
+
+std::string Studio::building() const {
+  for (const auto& [name, job] : jobs_)
+    if (job->kind() == Kind::build) return name;
+  return {};
+}
+
+fs::path Studio::case_folder(const StudioProject& p) const {
+  const std::string folder = p.work.contains("built") ? text_of(p.work["built"], "folder") : std::string();
+  return folder.empty() ? fs::path() : projects_.folder(p.name) / folder / p.name;
+}
+
+Json Studio::built_json(const StudioProject& p) const {
+  const fs::path folder = case_folder(p);
+  if (folder.empty()) return nullptr;
+  const Json report = read_json(folder / "report.json"), scenes = read_json(folder / "scenes.json");
+  return {{"current", p.work["built"].value("choices", Json()) == p.choices()},
+          {"number", p.work["built"].value("folder", "")},
+          {"report", report.is_object() ? report : Json::object()},
+          {"clip", scenes.is_object() && scenes.contains("clip") ? scenes["clip"] : Json()},
+          {"exercises", exercises_in(folder)}};
+}
+
+ApiAnswer Studio::shown(const StudioProject& p) const {
+  const auto work = [&](const char* what, const StudioJob* job) {
+    Json out = p.work.contains(what) ? p.work[what] : Json::object();
+    // What was running when this program ended is running no more.
+    if (!job && text_of(out, "state") == "running") out["state"] = "interrupted";
+    if (job)
+      out.update(
+          {{"stage", job->stage()}, {"percent", job->percent()}, {"step", job->step()}, {"seconds", job->seconds()}});
+    return out;
+  };
+  Json inspected = work("inspect", job(p.name, Kind::inspect));
+  if (text_of(inspected, "state") == "done")
+    inspected["facts"] = read_json(projects_.folder(p.name) / found_in / "inspect.json");
+  Json play = player_.state(p.name);
+  if (job(p.name, Kind::add)) play = {{"state", "adding"}, {"url", ""}, {"error", ""}};
+  else if (const auto it = add_error_.find(p.name); it != add_error_.end())
+    play = {{"state", "ended"}, {"url", ""}, {"error", it->second}};
+  return answer_with(Json{{"name", p.name},
+                          {"file", p.file},
+                          {"choices", p.choices()},
+                          {"undo", p.at > 0},
+                          {"redo", p.at + 1 < p.history.size()},
+                          {"command", command_line(p)},
+                          {"inspect", inspected},
+                          {"build", work("build", job(p.name, Kind::build))},
+                          {"built", built_json(p)},
+                          {"play", play}});
+}
+
+void Studio::inspect(StudioProject& p) {
+  const fs::path folder = projects_.folder(p.name);
+  std::error_code ignored;
+  fs::remove_all(folder / "inspect.part", ignored);
+  std::vector<std::string> command{(places_.programs / "insula_case").string(), "inspect", (folder / p.input).string(),
+                                   "--out", (folder / "inspect.part").string()};
+  const std::vector<std::string> more = intake_words(p.choices());
+  command.insert(command.end(), more.begin(), more.end());
+  const int number = p.work.contains("inspect") ? p.work["inspect"].value("number", 0) : 0;
+  p.work["inspect"] = {{"state", "running"}, {"error", ""}, {"number", number + 1}};
+  projects_.write(p);
+  jobs_[p.name] = std::make_unique<StudioJob>(Kind::inspect, command, inspect_limit);
+}
+
+ApiAnswer Studio::build(StudioProject& p) {
+  if (const std::string other = building(); !other.empty())
+    return refusal(409, other == p.name ? "this case is being built" : "another case is being built: " + other);
+  if (state_of(p, "inspect") != "done" || jobs_.count(p.name)) return refusal(409, "the file must be read first");
+  const fs::path folder = projects_.folder(p.name);
+  const int number = p.work.value("builds", 0) + 1;
+  const std::string name = "build_" + std::to_string(number);
+  std::error_code ignored;
+  const std::string kept = p.work.contains("built") ? text_of(p.work["built"], "folder") : std::string();
+  for (int k = 1; k <= number; ++k)  // what earlier ones left
+    if (const std::string old = "build_" + std::to_string(k); old != kept) fs::remove_all(folder / old, ignored);
+  std::vector<std::string> command{(places_.programs / "insula_case").string(),
+                                   "new",
+                                   p.name,
+                                   (folder / p.input).string(),
+                                   "--out",
+                                   (folder / name).string()};
+  const std::vector<std::string> more = case_words(p.choices());
+  command.insert(command.end(), more.begin(), more.end());
+  p.work["builds"] = number;
+  p.work["build"] = {{"state", "running"}, {"error", ""}, {"folder", name}, {"choices", p.choices()}};
+  projects_.write(p);
+  jobs_[p.name] = std::make_unique<StudioJob>(Kind::build, command, build_limit);
+  return shown(p);
+}
+
+ApiAnswer Studio::play(StudioProject& p, const std::string& exercise) {
+  const fs::path folder = case_folder(p);
+  const std::vector<std::string> all = folder.empty() ? std::vector<std::string>() : exercises_in(folder);
+  if (std::find(all.begin(), all.end(), exercise) == all.end()) return refusal(404, "there is no such exercise");
+  if (jobs_.count(p.name)) return refusal(409, "the case is at work; wait, or cancel it");
+  add_error_.erase(p.name);
+  wanted_exercise_[p.name] = exercise;
+  const std::vector<std::string> command{(places_.programs / "insula").string(),
+                                         "cases",
+                                         "add",
+                                         folder.string(),
+                                         "--replace",
+                                         "--data",
+                                         places_.data.string()};
+  jobs_[p.name] = std::make_unique<StudioJob>(Kind::add, command, inspect_limit);
+  return shown(p);
+}
+
+void Studio::added(const std::string& name, const StudioJob& job) {
+  if (!job.succeeded()) {
+    add_error_[name] = job.error();
+    return;
+  }
+  const fs::path folder = places_.data / "cases" / name;
+  const Json manifest = read_json(folder / "insula_case.json");
+  if (manifest.is_object() && manifest.contains("scenes"))
+    for (const Json& scene : manifest["scenes"])
+      if (scene.is_string() && fs::path(scene.get<std::string>()).filename() == wanted_exercise_[name])
+        return player_.play(name, folder / scene.get<std::string>());
+  add_error_[name] = "the exercise is not in the added case";
+}
+
+void Studio::ended(const std::string& name, const StudioJob& job) {
+  if (job.kind() == Kind::add) return added(name, job);
+  std::optional<StudioProject> p = projects_.read(name);
+  if (!p) return;
+  Json& work = p->work[job.kind() == Kind::build ? "build" : "inspect"];
+  std::error_code error;
+  if (job.succeeded() && job.kind() == Kind::inspect) {
+    const fs::path folder = projects_.folder(name);
+    fs::remove_all(folder / found_in, error);
+    fs::rename(folder / "inspect.part", folder / found_in, error);
+  }
+  if (job.succeeded() && job.kind() == Kind::build)
+    p->work["built"] = {{"folder", work["folder"]}, {"choices", work["choices"]}};
+  work["state"] = error || !job.succeeded() ? (job.cancelled() ? "cancelled" : "failed") : "done";
+  work["error"] = error ? "the project cannot be written: is the disk full?" : job.error();
+  projects_.write(*p);
+}
+
+void Studio::look() {
+  player_.look();
+  for (auto it = jobs_.begin(); it != jobs_.end();) {
+    if (!it->second->look()) {
+      ++it;
+      continue;
+    }
+    const auto [name, job] = std::pair(it->first, std::move(it->second));
+    it = jobs_.erase(it);
+    try {
+      ended(name, *job);
+    } catch (const InputError&) {
+      // The disk is full. The page then shows that the work was interrupted.
+    }
+  }
+}
+
+ApiAnswer Studio::change(StudioProject& p, std::string_view path, const Json& body) {
+  const std::vector<std::string> before = intake_words(p.choices());
+  StudioProject next = p;
+  if (path == "choose") choose(next, changed_choices(p.choices(), body.value("choices", Json())));
+  if (path == "undo" && next.at > 0) --next.at;
+  if (path == "redo" && next.at + 1 < next.history.size()) ++next.at;
+  const bool anew = intake_words(next.choices()) != before;
+  if (anew && jobs_.count(p.name) && !job(p.name, Kind::inspect))
+    return refusal(409, "the case is at work; wait, or cancel it");
+  if (anew) inspect(next);
+  else projects_.write(next);
+  return shown(next);
+}
+
+ApiAnswer Studio::act(std::string_view path, StudioProject& p, const Json& body) {
+  if (path == "choose" || path == "undo" || path == "redo") return change(p, path, body);
+  if (path == "build") return build(p);
+  if (path == "play") return play(p, text_of(body, "exercise"));
+  if (path == "cancel") {
+    if (const auto it = jobs_.find(p.name); it != jobs_.end()) it->second->cancel();
+    return shown(p);
+  }
+  if (path == "remove") {
+    if (jobs_.count(p.name)) return refusal(409, "the case is at work; wait, or cancel it");
+    projects_.remove(p.name);
+    return {200, "{}\n"};
+  }
+  return refusal(404, "not found");
+}
+
+ApiAnswer Studio::get(std::string_view path, std::string_view query) {
+  if (path == "projects") {
+    Json list = Json::array();
+    for (const std::string& name : projects_.names())
+      if (const auto p = projects_.read(name))
+        list.push_back({{"name", name}, {"file", p->file}, {"built", !case_folder(*p).empty()}});
+    return answer_with(Json{{"projects", list}, {"building", building()}, {"most_bytes", most_upload_bytes}});
+  }
+  if (path != "project") return refusal(404, "not found");
+  std::optional<StudioProject> p = projects_.read(query_value(query, "name"));
+  if (!p) return refusal(404, "there is no such project");
+  try {
+    const std::string state = state_of(*p, "inspect");
+    if (!jobs_.count(p->name) && state != "done" && state != "failed" && state != "cancelled") inspect(*p);
+    return shown(*p);
+  } catch (const InputError& e) {
+    return refusal(500, e.what());
+  } catch (const Json::exception&) {
+    return refusal(500, damaged);
+  }
+}
+
+ApiAnswer Studio::post(std::string_view path, const std::string& text) {
+  const Json body = Json::parse(text, nullptr, false);
+  if (!body.is_object()) return refusal(400, "this is no JSON object");
+  std::optional<StudioProject> p = projects_.read(text_of(body, "name"));
+  if (!p) return refusal(404, "there is no such project");
+  try {
+    return act(path, *p, body);
+  } catch (const InputError& e) {
+    return refusal(400, e.what());
+  } catch (const Json::exception&) {
+    return refusal(500, damaged);
+  }
+}
+
+ApiAnswer Studio::upload(std::string_view query, const std::string& bytes) {
+  if (bytes.size() > most_upload_bytes) return refusal(413, "this file is too large: 220 MB are taken");
+  const SurfaceKind kind = surface_kind(bytes);
+  if (kind.extension.empty()) return refusal(415, kind.refused);
+  try {
+    StudioProject p = projects_.create(query_value(query, "file"), kind.extension, bytes);
+    inspect(p);
+    return shown(p);
+  } catch (const InputError& e) {
+    return refusal(507, e.what());
+  }
+}
+
+std::optional<fs::path> Studio::file(std::string_view path, std::string_view query) const {
+  const auto p = projects_.read(query_value(query, "name"));
+  if (!p) return std::nullopt;
+  fs::path out;
+  if (path == "surface") out = projects_.folder(p->name) / found_in / "surface.ply";
+  else if (const fs::path folder = case_folder(*p); folder.empty()) return std::nullopt;
+  else if (path == "report") out = folder / "report.html";
+  else if (path == "side" || path == "front" || path == "fissure")
+    out = folder / ("report_" + std::string(path) + ".svg");
+  std::error_code error;
+  return fs::is_regular_file(out, error) ? std::optional(out) : std::nullopt;
+}
+
+}  // namespace insula::gateway

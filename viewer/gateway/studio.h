@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the page of the case builder asks for. All work is done by `insula_case` and `insula` as programs of their own,
+// so that none of it can harm this one. Used on the network thread.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "viewer/gateway/api_answer.h"
+#include "viewer/gateway/studio_job.h"
+#include "viewer/gateway/studio_player.h"
+#include "viewer/gateway/studio_projects.h"
+
+namespace insula::gateway {
+
+struct StudioPlaces {
+  std::filesystem::path data;      ///< folder of the user's data; empty: the page is not offered
+  std::filesystem::path programs;  ///< folder of insula and insula_case
+};
+
+class Studio {
+ public:
+  /// What the case builder reads at most of a surface.
+  static constexpr std::uint64_t most_upload_bytes = 220'000'000;
+
+  explicit Studio(const StudioPlaces& places);
+  bool offered() const { return !places_.data.empty(); }
+
+  /// path: what follows /api/studio/.
+  ///   projects        {projects: [{name, file, state}], building, most_bytes}
+  ///   project?name=   {name, file, choices, undo, redo, command, inspect: {state, error, number, facts},
+  ///                    build: {state, error, seconds, stage, percent, step}, built: {current, report, exercises},
+  ///                    play: {state, url, error}}
+  ApiAnswer get(std::string_view path, std::string_view query);
+  ///   choose {name, choices}; undo, redo, build, cancel, remove {name}; play {name, exercise}: the project, as above
+  ApiAnswer post(std::string_view path, const std::string& body);
+  /// file=: name of the author's file. The new project.
+  ApiAnswer upload(std::string_view query, const std::string& bytes);
+  /// surface, side, front, fissure and report of the project name=.
+  std::optional<std::filesystem::path> file(std::string_view path, std::string_view query) const;
+  /// Looks after the programs at work; about ten times a second.
+  void look();
+
+ private:
+  ApiAnswer act(std::string_view path, StudioProject& project, const nlohmann::json& body);
+  ApiAnswer change(StudioProject& project, std::string_view path, const nlohmann::json& body);
+  ApiAnswer build(StudioProject& project);
+  ApiAnswer play(StudioProject& project, const std::string& exercise);
+  ApiAnswer shown(const StudioProject& project) const;
+  nlohmann::json built_json(const StudioProject& project) const;
+  const StudioJob* job(const std::string& name, StudioJob::Kind kind) const;
+  std::string building() const;
+  void inspect(StudioProject& project);
+  void ended(const std::string& name, const StudioJob& job);
+  void added(const std::string& name, const StudioJob& job);
+  std::filesystem::path case_folder(const StudioProject& project) const;
+
+  StudioPlaces places_;
+  StudioProjects projects_;
+  std::map<std::string, std::unique_ptr<StudioJob>> jobs_;          ///< by project: one each
+  std::map<std::string, std::string> wanted_exercise_, add_error_;  ///< by project
+  StudioPlayer player_;
+};
+
+}  // namespace insula::gateway

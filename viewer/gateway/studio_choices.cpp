@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viewer/gateway/studio_choices.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "core/base/input_error.h"
+
+namespace insula::gateway {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double far_away = 1e6;  // mm
+constexpr std::size_t most_cuts = 12;
+
+bool is_number(const Json& v, double least, double most) {
+  return v.is_number() && std::isfinite(v.get<double>()) && v.get<double>() >= least && v.get<double>() <= most;
+}
+
+bool are_numbers(const Json& v, std::size_t count) {
+  return v.is_array() && v.size() == count &&
+         std::all_of(v.begin(), v.end(), [](const Json& x) { return is_number(x, -far_away, far_away); });
+}
+
+bool is_plane(const Json& v) {
+  return are_numbers(v, 6) && std::hypot(v[3].get<double>(), v[4].get<double>(), v[5].get<double>()) > 1e-9;
+}
+
+bool is_neck(const Json& v) {
+  if (v.is_null()) return true;
+  if (!v.is_object() || v.size() != 1) return false;
+  return v.contains("plane") ? is_plane(v["plane"]) : v.contains("points") && are_numbers(v["points"], 6);
+}
+
+bool are_cuts(const Json& v) {
+  return v.is_array() && v.size() <= most_cuts && std::all_of(v.begin(), v.end(), is_plane);
+}
+
+bool is_one_of(const Json& v, std::initializer_list<const char*> values) {
+  return v.is_string() && std::any_of(values.begin(), values.end(), [&](const char* one) { return v == one; });
+}
+
+struct Rule {
+  std::function<bool(const Json&)> allows;
+  const char* refused;
+};
+
+const std::map<std::string, Rule>& rules() {
+  const auto is_switch = [](const Json& v) { return v.is_boolean(); };
+  const auto whole = [](int least, int most) {
+    return [=](const Json& v) { return v.is_number_integer() && is_number(v, least, most); };
+  };
+  static const std::map<std::string, Rule> all = {
+      {"unit",
+       {[](const Json& v) {
+          return is_one_of(v, {"", "mm", "cm", "m", "um", "inch"});
+        },
+        "this is no unit of a file"}},
+      {"mirror", {is_switch, "the side is left or right"}},
+      {"any_size", {is_switch, "sizes are checked, or not"}},
+      {"cuts", {are_cuts, "a cut has a point and a direction; there are 12 at most"}},
+      {"neck", {is_neck, "a neck has a point and a direction, or two points"}},
+      {"inlet", {[](const Json& v) { return v.is_null() || are_numbers(v, 3); }, "the inlet is a point"}},
+      {"rebuild_mm",
+       {[](const Json& v) { return v.is_null() || is_number(v, 0.03, 2); }, "the grid is from 0.03 to 2 mm"}},
+      {"keep_mm",
+       {[](const Json& v) { return is_number(v, 0, 200); }, "the kept length of the vessels is from 0 to 200 mm"}},
+      {"vertices", {whole(400, 6000), "a wall has from 400 to 6000 vertices"}},
+      {"spin_deg",
+       {[](const Json& v) { return v.is_null() || is_number(v, -360, 360); }, "a turn is from -360 to 360 degrees"}},
+      {"rehearse", {is_switch, "the exercises are played, or not"}},
+      {"plays", {whole(1, 100), "from 1 to 100 places of the clip can be tried"}},
+      {"site",
+       {[](const Json& v) { return v.is_string() && v.get_ref<const std::string&>().size() <= 64; },
+        "this is no site of an aneurysm"}},
+      {"difficulty", {whole(0, 5), "the difficulty is from 1 to 5"}}};
+  return all;
+}
+
+/// "1.23 4.56 7.89 mm", and a direction behind it.
+std::string place(const Json& v, std::size_t first = 0) {
+  return fmt::format("{:.3f} {:.3f} {:.3f} mm", v[first].get<double>(), v[first + 1].get<double>(),
+                     v[first + 2].get<double>());
+}
+
+std::string plane(const Json& v) {
+  return fmt::format("{} {:.4f} {:.4f} {:.4f}", place(v), v[3].get<double>(), v[4].get<double>(), v[5].get<double>());
+}
+
+}  // namespace
+
+Json first_choices() {
+  return {{"unit", ""},       {"mirror", false},     {"any_size", false},     {"cuts", Json::array()},
+          {"neck", nullptr},  {"inlet", nullptr},    {"rebuild_mm", nullptr}, {"keep_mm", 13},
+          {"vertices", 1650}, {"spin_deg", nullptr}, {"rehearse", true},      {"plays", 16},
+          {"site", ""},       {"difficulty", 0}};
+}
+
+Json changed_choices(Json choices, const Json& changes) {
+  if (!changes.is_object()) throw InputError("these are no choices");
+  for (const auto& [name, value] : changes.items()) {
+    const auto rule = rules().find(name);
+    if (rule == rules().end()) throw InputError("there is no choice of this name");
+    if (!rule->second.allows(value)) throw InputError(rule->second.refused);
+    choices[name] = value;
+  }
+  return choices;
+}
+
+std::vector<std::string> intake_words(const Json& c) {
+  std::vector<std::string> out;
+  if (c["unit"] != "") out.insert(out.end(), {"--unit", c["unit"].get<std::string>()});
+  if (c["mirror"] == true) out.emplace_back("--mirror");
+  if (c["any_size"] == true) out.emplace_back("--any-size");
+  if (!c["rebuild_mm"].is_null())
+    out.insert(out.end(), {"--rebuild", fmt::format("{:g} mm", c["rebuild_mm"].get<double>())});
+  for (const Json& cut : c["cuts"]) out.insert(out.end(), {"--cut", plane(cut)});
+  return out;
+}
+
+std::vector<std::string> case_words(const Json& c) {
+  std::vector<std::string> out = intake_words(c);
+  const Json before = first_choices();
+  const auto add = [&](const char* option, const std::string& value) { out.insert(out.end(), {option, value}); };
+  if (const Json& neck = c["neck"]; neck.is_object()) {
+    if (neck.contains("plane")) add("--neck", plane(neck["plane"]));
+    else add("--neck-points", place(neck["points"]) + " " + place(neck["points"], 3));
+  }
+  if (!c["inlet"].is_null()) add("--inlet", place(c["inlet"]));
+  if (c["keep_mm"] != before["keep_mm"]) add("--keep", fmt::format("{:g} mm", c["keep_mm"].get<double>()));
+  if (c["vertices"] != before["vertices"]) add("--vertices", std::to_string(c["vertices"].get<int>()));
+  if (!c["spin_deg"].is_null()) add("--spin", fmt::format("{:g} deg", c["spin_deg"].get<double>()));
+  if (c["rehearse"] == false) out.emplace_back("--no-rehearse");
+  if (c["plays"] != before["plays"]) add("--plays", std::to_string(c["plays"].get<int>()));
+  if (c["site"] != "") add("--site", c["site"].get<std::string>());
+  if (c["difficulty"] != 0) add("--difficulty", std::to_string(c["difficulty"].get<int>()));
+  return out;
+}
+
+}  // namespace insula::gateway

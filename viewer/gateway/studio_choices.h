@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What an author chooses for a case on the page of the case builder, and the same as words of its command line.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace insula::gateway {
+
+/// All of them, as they are for a new case:
+/// {unit, mirror, any_size, cuts: [[6]], neck: null | {plane: [6]} | {points: [6]}, inlet: null | [3],
+///  rebuild_mm: null | number, keep_mm, vertices, spin_deg: null | number, rehearse, plays, site, difficulty}
+nlohmann::json first_choices();
+
+/// Choices with some of them changed. Throws InputError, which says for the author what is wrong.
+nlohmann::json changed_choices(nlohmann::json choices, const nlohmann::json& changes);
+
+/// Options of `insula case` that say the same: those of its stage intake, and all.
+std::vector<std::string> intake_words(const nlohmann::json& choices);
+std::vector<std::string> case_words(const nlohmann::json& choices);
+
+}  // namespace insula::gateway

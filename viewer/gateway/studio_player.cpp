@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viewer/gateway/studio_player.h"
+
+#include <signal.h>
+
+namespace insula::gateway {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr auto session_end = std::chrono::seconds(8);  // insula play ends its own children within three
+
+}  // namespace
+
+StudioPlayer::StudioPlayer(fs::path program, fs::path data) : program_(std::move(program)), data_(std::move(data)) {}
+
+void StudioPlayer::play(const std::string& project, const fs::path& scene) {
+  project_ = project, next_ = scene;
+  url_.clear(), error_.clear(), last_line_.clear();
+  kill_at_ = std::chrono::steady_clock::now() + session_end;
+  child_.send(SIGTERM);
+  look();
+}
+
+void StudioPlayer::start() {
+  error_ = child_.start(
+      {program_.string(), "play", next_.string(), "--no-browser", "--port", "8090", "--data", data_.string()});
+  next_.clear();
+}
+
+void StudioPlayer::hear(std::string_view line) {
+  constexpr std::string_view serving = "viewer at ";
+  if (!next_.empty()) return;  // what the session before says at its end
+  if (const std::size_t at = line.find(serving); at != std::string_view::npos) url_ = line.substr(at + serving.size());
+  else last_line_ = line;
+}
+
+void StudioPlayer::look() {
+  const auto heard = [this](std::string_view line) { hear(line); };
+  child_.read_lines(heard);
+  if (const auto exit = child_.reap()) {
+    child_.finish_output(heard);
+    if (next_.empty() && url_.empty()) error_ = last_line_.empty() ? "the session " + exit->text() : last_line_;
+    url_.clear();
+  }
+  if (next_.empty()) return;
+  if (!child_.running()) start();
+  else if (std::chrono::steady_clock::now() > kill_at_) child_.send(SIGKILL);
+}
+
+nlohmann::json StudioPlayer::state(const std::string& project) const {
+  if (project.empty() || project != project_) return nullptr;
+  const bool runs = child_.running() || !next_.empty();
+  return {{"state", !runs ? "ended" : url_.empty() ? "starting" : "running"}, {"url", url_}, {"error", error_}};
+}
+
+}  // namespace insula::gateway

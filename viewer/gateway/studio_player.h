@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The session in which an author plays an exercise of a case that he has built: at most one.
+#pragma once
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/base/child_process.h"
+
+namespace insula::gateway {
+
+class StudioPlayer {
+ public:
+  /// program: insula. data: folder of the user's data.
+  StudioPlayer(std::filesystem::path program, std::filesystem::path data);
+
+  /// Plays the scene. A session that runs is ended first.
+  void play(const std::string& project, const std::filesystem::path& scene);
+  void look();
+  /// {state: "starting" | "running" | "ended", url, error}; null if nothing of the project was played.
+  nlohmann::json state(const std::string& project) const;
+
+ private:
+  void start();
+  void hear(std::string_view line);
+
+  std::filesystem::path program_, data_;
+  ChildProcess child_;
+  std::string project_, url_, error_, last_line_;
+  std::filesystem::path next_;  ///< scene that waits for the end of the session before; empty: none
+  std::chrono::steady_clock::time_point kill_at_;
+};
+
+}  // namespace insula::gateway

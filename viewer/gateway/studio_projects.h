@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Projects of the case builder's page on the disk: a folder each, with the author's file as it came, his choices with
+// all earlier ones, what was found in the file, and the built case. Every change is written at once and in one go.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace insula::gateway {
+
+struct StudioProject {
+  std::string name, file;               ///< file: its name at the author
+  std::string input;                    ///< its name in the folder
+  std::vector<nlohmann::json> history;  ///< choices; one at least
+  std::size_t at = 0;                   ///< the present ones
+  /// {inspect: {state, error}, build: {state, error, folder, choices, began_ms}, builds}; states: running, done,
+  /// failed, cancelled.
+  nlohmann::json work;
+
+  const nlohmann::json& choices() const { return history[at]; }
+};
+
+class StudioProjects {
+ public:
+  explicit StudioProjects(std::filesystem::path root) : root_(std::move(root)) {}
+
+  /// A name for a project from that of a file: its letters and digits, others as _.
+  static std::string name_for(const std::string& file);
+  std::filesystem::path folder(const std::string& name) const { return root_ / name; }
+  std::vector<std::string> names() const;
+  /// Nothing if there is none of that name, or its description cannot be read.
+  std::optional<StudioProject> read(const std::string& name) const;
+  /// Throws InputError.
+  void write(const StudioProject& project) const;
+  /// A new project with the bytes of its file. If the name is taken, it gets a number. Throws InputError.
+  StudioProject create(const std::string& file, const std::string& extension, const std::string& bytes) const;
+  void remove(const std::string& name) const;
+
+ private:
+  std::filesystem::path root_;
+};
+
+/// Makes choices the present ones. Later ones, which had been undone, go.
+void choose(StudioProject& project, nlohmann::json choices);
+
+}  // namespace insula::gateway

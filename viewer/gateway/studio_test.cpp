@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page of the case builder as its gateway keeps it: files that are refused, projects on the disk, undo, and work
+// that ends well, badly, or with the program itself. A script stands for the case builder; the browser test uses the
+// real one.
+#include "viewer/gateway/studio.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <optional>
+#include <thread>
+
+#include "core/base/input_error.h"
+#include "core/bus/mem_bus.h"
+#include "core/testing/temp_folder.h"
+#include "viewer/gateway/client_for_test.h"
+#include "viewer/gateway/gateway.h"
+#include "viewer/gateway/studio_choices.h"
+#include "viewer/gateway/surface_kind.h"
+
+namespace insula::gateway {
+namespace {
+
+namespace fs = std::filesystem;
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using asio::ip::tcp;
+using nlohmann::json;
+
+constexpr const char* off_file = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+/// Writes what the stages write, says how far it is, and does what the file "behaviour" beside it says.
+constexpr const char* builder = R"(#!/bin/sh
+here=$(dirname "$0")
+behaviour=$(cat "$here/behaviour" 2>/dev/null)
+echo "$@" >> "$here/asked"
+what=$1
+case=$2
+while [ "$1" != --out ]; do shift; done
+echo "wall     40 %  checks"
+[ "$what$behaviour" = newhang ] && exec sleep 100
+[ "$what$behaviour" = newcrash ] && kill -SEGV $$
+[ "$what$behaviour" = newrefuse ] && echo "error: no sac was found" && exit 2
+mkdir -p "$2"
+[ "$what" = inspect ] && echo '{"openings": [], "neck": {"proposals": []}}' > "$2/inspect.json" && exit 0
+mkdir -p "$2/$case" && echo '{"problems": []}' > "$2/$case/report.json" && touch "$2/$case/3_clipping.xml"
+)";
+
+class StudioTest : public ::testing::Test {
+ protected:
+  StudioTest() {
+    const fs::path program = folder_.write("bin/insula_case", builder);
+    fs::permissions(program, fs::perms::owner_all);
+    restart();
+  }
+  /// As after a crash of the gateway: nothing is said to the studio before.
+  void restart() { studio_.emplace(StudioPlaces{folder_.path() / "data", folder_.path() / "bin"}); }
+  void behave(const std::string& how) { folder_.write("bin/behaviour", how); }
+
+  json upload(const std::string& file = "vessel.off", const std::string& bytes = off_file) {
+    return json::parse(studio_->upload("file=" + file, bytes).json);
+  }
+  ApiAnswer ask(const std::string& act, const std::string& name, json more = json::object()) {
+    more["name"] = name;
+    return studio_->post(act, more.dump());
+  }
+  json project(const std::string& name) { return json::parse(studio_->get("project", "name=" + name).json); }
+  /// The project, once `what` is no longer at work.
+  json wait(const std::string& name, const char* what) {
+    for (int k = 0; k < 500; ++k) {
+      studio_->look();
+      const json now = project(name);
+      if (now[what]["state"] != "running") return now;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ADD_FAILURE() << what << " does not end";
+    return project(name);
+  }
+  /// A project whose file has been read.
+  std::string ready(const std::string& file = "vessel.off") {
+    const std::string name = upload(file)["name"];
+    EXPECT_EQ(wait(name, "inspect")["inspect"]["state"], "done");
+    return name;
+  }
+
+  test_files::TempFolder folder_;
+  std::optional<Studio> studio_;
+};
+
+TEST(SurfaceKind, IsToldByContentNotByName) {
+  std::string stl(84 + 50, '\0');
+  stl[80] = 1;
+  EXPECT_EQ(surface_kind(stl).extension, ".stl");
+  EXPECT_EQ(surface_kind("solid a\nfacet normal 0 0 1\n").extension, ".stl");
+  EXPECT_EQ(surface_kind("ply\nformat ascii 1.0\n").extension, ".ply");
+  EXPECT_EQ(surface_kind(off_file).extension, ".off");
+  EXPECT_EQ(surface_kind("# made by hand\n\nv 0 0 0\n").extension, ".obj");
+  EXPECT_EQ(surface_kind("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">").extension, ".vtp");
+  EXPECT_EQ(surface_kind("{\"asset\": {\"version\": \"2.0\"}}").extension, ".gltf");
+}
+
+TEST(SurfaceKind, OthersAreRefused) {
+  for (const std::string& bytes :
+       {std::string("\x89PNG\r\n\x1a\n"), std::string("#!/bin/sh\nrm -r x\n"), std::string("PK\x03\x04"),
+        std::string("<html>"), std::string(84, '\0'), std::string("{\"a\": 1}"), std::string("glTF")})
+    EXPECT_EQ(surface_kind(bytes).extension, "") << bytes;
+  EXPECT_EQ(surface_kind("").refused, "this file is empty");
+  EXPECT_NE(surface_kind("<VTKFile type=\"UnstructuredGrid\">").refused.find("PolyData"), std::string::npos);
+  const char* outside = R"({"asset": {}, "buffers": [{"uri": "../../etc/passwd"}]})";
+  EXPECT_NE(surface_kind(outside).refused.find("other files"), std::string::npos);
+}
+
+TEST(StudioChoices, AreOptionsOfTheCommand) {
+  using Words = std::vector<std::string>;
+  json c = first_choices();
+  EXPECT_EQ(case_words(c), Words{});
+  c = changed_choices(c, {{"unit", "cm"}, {"neck", {{"points", {1, 2, 3, 4, 5, 6}}}}, {"rehearse", false}});
+  EXPECT_EQ(case_words(c),
+            (Words{"--unit", "cm", "--neck-points", "1.000 2.000 3.000 mm 4.000 5.000 6.000 mm", "--no-rehearse"}));
+  EXPECT_EQ(intake_words(c), (Words{"--unit", "cm"}));
+  c = changed_choices(c, {{"neck", {{"plane", {1, 2, 3, 0, 0, 1}}}}});
+  EXPECT_EQ(case_words(c)[3], "1.000 2.000 3.000 mm 0.0000 0.0000 1.0000");
+}
+
+TEST(StudioChoices, WrongOnesAreRefused) {
+  const json wrong[] = {{{"unit", "--brain"}},
+                        {{"neck", {{"plane", {0, 0, 0, 0, 0, 0}}}}},
+                        {{"neck", "top"}},
+                        {{"vertices", 1e9}},
+                        {{"out", "/tmp"}},
+                        {{"mirror", 1}},
+                        {{"inlet", {1, 2}}},
+                        {{"cuts", {{1, 2, 3}}}},
+                        json(3)};
+  for (const json& changes : wrong)
+    EXPECT_THROW(changed_choices(first_choices(), changes), InputError) << changes.dump();
+}
+
+TEST_F(StudioTest, AFileKeepsItsBytesAndGetsASafeName) {
+  EXPECT_EQ(upload("..%2F..%2Fetc%2Fp%20q.sh")["name"], "p_q");
+  EXPECT_EQ(upload("%2E%2E")["name"], "case");
+  EXPECT_EQ(upload("vessel.off")["name"], "vessel");
+  EXPECT_EQ(upload("vessel.exe")["name"], "vessel_2");
+  std::ifstream in(folder_.path() / "data/studio/vessel_2/input.off");
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), off_file);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()), 2) << "bin and data";
+}
+
+TEST_F(StudioTest, AWrongFileMakesNoProject) {
+  EXPECT_EQ(studio_->upload("file=a.stl", "\x89PNG").status, 415);
+  EXPECT_EQ(json::parse(studio_->get("projects", "").json)["projects"], json::array());
+}
+
+TEST_F(StudioTest, UnknownProjectsAndPathsAreRefused) {
+  upload();
+  for (const std::string name : {"other", "", "..", "../studio/vessel", "vessel/../vessel"}) {
+    EXPECT_EQ(studio_->get("project", "name=" + name).status, 404) << name;
+    EXPECT_EQ(ask("build", name).status, 404) << name;
+    EXPECT_FALSE(studio_->file("surface", "name=" + name)) << name;
+  }
+  EXPECT_EQ(studio_->post("build", "[]").status, 400);
+  EXPECT_EQ(ask("format", "vessel").status, 404);
+  EXPECT_EQ(ask("play", "vessel", {{"exercise", "../../x.xml"}}).status, 404);
+}
+
+TEST_F(StudioTest, ChoicesAreKeptAndTakenBack) {
+  const std::string name = ready();
+  EXPECT_EQ(ask("choose", name, {{"choices", {{"difficulty", 3}}}}).status, 200);
+  EXPECT_EQ(ask("choose", name, {{"choices", {{"difficulty", 9}}}}).status, 400);
+  ask("choose", name, {{"choices", {{"difficulty", 4}}}});
+  ask("undo", name);
+  restart();
+  json now = project(name);
+  EXPECT_EQ(now["choices"]["difficulty"], 3);
+  EXPECT_TRUE(now["undo"] && now["redo"]);
+  ask("redo", name);
+  EXPECT_EQ(project(name)["choices"]["difficulty"], 4);
+  ask("undo", name), ask("undo", name), ask("undo", name);
+  EXPECT_EQ(project(name)["choices"]["difficulty"], 0);
+  ask("choose", name, {{"choices", {{"site", "basilar tip"}}}});
+  EXPECT_FALSE(project(name)["redo"]) << "another way was taken";
+}
+
+TEST_F(StudioTest, AnotherUnitReadsTheFileAgain) {
+  const std::string name = ready();
+  const json now = json::parse(ask("choose", name, {{"choices", {{"unit", "cm"}}}}).json);
+  EXPECT_EQ(now["inspect"]["state"], "running");
+  EXPECT_EQ(wait(name, "inspect")["inspect"]["number"], 2);
+  std::ifstream asked(folder_.path() / "bin/asked");
+  const std::string all(std::istreambuf_iterator<char>(asked), {});
+  EXPECT_NE(all.find("--unit cm"), std::string::npos) << all;
+}
+
+TEST_F(StudioTest, ACaseIsBuilt) {
+  const std::string name = ready();
+  EXPECT_EQ(ask("build", name).status, 200);
+  json now = wait(name, "build");
+  EXPECT_EQ(now["build"]["state"], "done") << now;
+  EXPECT_EQ(now["built"]["exercises"], json{"3_clipping.xml"});
+  EXPECT_EQ(now["built"]["current"], true);
+  ask("choose", name, {{"choices", {{"difficulty", 2}}}});
+  EXPECT_EQ(project(name)["built"]["current"], false);
+}
+
+TEST_F(StudioTest, OnlyOneCaseIsBuiltAtATime) {
+  const std::string one = ready("one.off"), two = ready("two.off");
+  behave("hang");
+  EXPECT_EQ(ask("build", one).status, 200);
+  EXPECT_EQ(ask("build", one).status, 409);
+  const ApiAnswer other = ask("build", two);
+  EXPECT_EQ(other.status, 409);
+  EXPECT_NE(other.json.find("one"), std::string::npos) << "it says which";
+  EXPECT_EQ(ask("remove", one).status, 409);
+  EXPECT_EQ(ask("choose", one, {{"choices", {{"unit", "cm"}}}}).status, 409);
+  ask("cancel", one);
+  EXPECT_EQ(wait(one, "build")["build"]["state"], "cancelled");
+  behave("");
+  ask("build", two);
+  EXPECT_EQ(wait(two, "build")["build"]["state"], "done");
+}
+
+TEST_F(StudioTest, ARefusalAndACrashOfTheBuilderLoseNothing) {
+  const std::string name = ready();
+  ask("build", name);
+  ASSERT_EQ(wait(name, "build")["build"]["state"], "done");
+  behave("refuse");
+  ask("build", name);
+  json now = wait(name, "build");
+  EXPECT_EQ(now["build"]["state"], "failed");
+  EXPECT_EQ(now["build"]["error"], "no sac was found");
+  behave("crash");
+  ask("build", name);
+  now = wait(name, "build");
+  EXPECT_EQ(now["build"]["state"], "failed");
+  EXPECT_NE(now["build"]["error"].get<std::string>().find("signal 11"), std::string::npos) << now["build"];
+  EXPECT_EQ(now["built"]["exercises"], json{"3_clipping.xml"}) << "the case that was built before";
+  behave("");
+  ask("build", name);
+  EXPECT_EQ(wait(name, "build")["build"]["state"], "done");
+}
+
+TEST_F(StudioTest, ACrashOfTheGatewayLosesNothing) {
+  const std::string name = ready();
+  ask("choose", name, {{"choices", {{"difficulty", 5}}}});
+  behave("hang");
+  ask("build", name);
+  restart();
+  json now = project(name);
+  EXPECT_EQ(now["build"]["state"], "interrupted");
+  EXPECT_EQ(now["choices"]["difficulty"], 5);
+  EXPECT_EQ(now["inspect"]["state"], "done");
+  behave("");
+  ask("build", name);
+  EXPECT_EQ(wait(name, "build")["build"]["state"], "done");
+}
+
+/// Over HTTP.
+class StudioPages : public StudioTest {
+ protected:
+  StudioPages() {
+    Options options;
+    options.port = 0;
+    options.listen = "0.0.0.0";
+    options.discovery = false;
+    options.studio = {folder_.path() / "data", folder_.path() / "bin"};
+    options.is_here = [](const auto& remote, const auto&) { return remote.to_string() == "127.0.0.1"; };
+    gateway_.emplace(bus_, options);
+    EXPECT_EQ(gateway_->start(), "");
+  }
+  pages::Response put(const std::string& from, std::string body, pages::Fields fields = {}) {
+    return pages::ask(from, gateway_->port(),
+                      {http::verb::put, "/api/studio/upload?file=a.off", std::move(fields), std::move(body)});
+  }
+  MemBus bus_;
+  std::optional<Gateway> gateway_;
+};
+
+TEST_F(StudioPages, AreOnlyForThisMachine) {
+  const auto get = [&](const std::string& from) {
+    return pages::ask(from, gateway_->port(), {http::verb::get, "/api/studio/projects"}).result_int();
+  };
+  EXPECT_EQ(get("127.0.0.1"), 200u);
+  EXPECT_EQ(get("127.0.0.2"), 403u);
+  EXPECT_EQ(put("127.0.0.2", off_file).result_int(), 403u);
+  EXPECT_EQ(put("127.0.0.1", off_file, {{"Origin", "http://example.org"}}).result_int(), 403u);
+  EXPECT_EQ(put("127.0.0.1", off_file).result_int(), 200u);
+}
+
+TEST_F(StudioPages, TakeLargeFilesUpToALimit) {
+  std::string large = off_file;
+  large.append(3'000'000, '\n');  // far more than any other request may have
+  EXPECT_EQ(put("127.0.0.1", large).result_int(), 200u);
+  // The head alone is enough to be refused.
+  asio::io_context io;
+  tcp::socket socket(io);
+  pages::connect(socket, "127.0.0.1", gateway_->port());
+  const std::string head = "PUT /api/studio/upload?file=a.off HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: " +
+                           std::to_string(Studio::most_upload_bytes + 1) + "\r\n\r\n";
+  asio::write(socket, asio::buffer(head));
+  beast::flat_buffer buffer;
+  pages::Response answer;
+  http::read(socket, buffer, answer);
+  EXPECT_EQ(answer.result_int(), 413u);
+}
+
+}  // namespace
+}  // namespace insula::gateway

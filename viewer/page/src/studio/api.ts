@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the page of the case builder asks the gateway for, and checks before use (viewer/gateway/studio.h).
+import { said } from '../languages/said';
+import { text as message } from '../languages/text';
+import { Api, list, number, numberOrNull, object, text } from '../start/api';
+
+export type Point = [number, number, number];
+
+export interface Proposal {
+  method: string;
+  diameterMm: number;
+  /** Of its dome with that of the first proposal, 0 to 1. */
+  agreement: number;
+  planar: boolean;
+  centre: Point;
+  normal: Point;
+}
+
+export interface Opening {
+  centre: Point;
+  normal: Point;
+  calibreMm: number;
+}
+
+/** kind: 'fact', 'repair' or 'problem'. */
+export interface Note {
+  kind: string;
+  text: string;
+  advice: string;
+}
+
+/** What the case builder found in the file. */
+export interface Facts {
+  triangles: number;
+  sizeMm: Point;
+  openings: Opening[];
+  confidence: number;
+  proposals: Proposal[];
+  /** Why no neck was found; '': one was. */
+  problem: string;
+  notes: Note[];
+}
+
+export type Neck = { plane: number[] } | { points: number[] } | null;
+
+export interface Choices {
+  unit: string;
+  mirror: boolean;
+  neck: Neck;
+  inlet: Point | null;
+  rebuildMm: number | null;
+  vertices: number;
+  rehearse: boolean;
+  site: string;
+  difficulty: number;
+}
+
+/** state: '', 'running', 'done', 'failed', 'cancelled' or 'interrupted'. */
+export interface Work {
+  state: string;
+  error: string;
+  stage: string;
+  percent: number;
+  seconds: number;
+  /** Counts the times that the file was read. */
+  number: number;
+}
+
+export interface Built {
+  /** Its choices are the present ones. */
+  current: boolean;
+  number: string;
+  neckMm: number;
+  confidence: number | null;
+  overlapMm: { what: string; mm: number }[];
+  stepMs: number;
+  budgetMs: number;
+  clip: string;
+  clipping: { grade: number; remnantPct: number } | null;
+  problems: { id: string; text: string; whatToDo: string }[];
+  exercises: string[];
+}
+
+export interface Project {
+  name: string;
+  file: string;
+  choices: Choices;
+  undo: boolean;
+  redo: boolean;
+  command: string;
+  inspect: Work;
+  facts: Facts | null;
+  build: Work;
+  built: Built | null;
+  play: { state: string; url: string; error: string };
+}
+
+export interface Listed {
+  name: string;
+  file: string;
+  built: boolean;
+}
+
+const numbers = (value: unknown): number[] => (Array.isArray(value) ? value.map(number) : []);
+
+function point(value: unknown): Point {
+  const [x = 0, y = 0, z = 0] = numbers(value);
+  return [x, y, z];
+}
+
+const pointOrNull = (value: unknown): Point | null => (Array.isArray(value) ? point(value) : null);
+
+function neckOf(value: unknown): Neck {
+  const neck = object(value);
+  if (Array.isArray(neck.plane)) return { plane: numbers(neck.plane) };
+  return Array.isArray(neck.points) ? { points: numbers(neck.points) } : null;
+}
+
+function choicesOf(value: unknown): Choices {
+  const c = object(value);
+  return {
+    unit: text(c.unit),
+    mirror: c.mirror === true,
+    neck: neckOf(c.neck),
+    inlet: pointOrNull(c.inlet),
+    rebuildMm: numberOrNull(c.rebuild_mm),
+    vertices: number(c.vertices),
+    rehearse: c.rehearse === true,
+    site: text(c.site),
+    difficulty: number(c.difficulty),
+  };
+}
+
+function workOf(value: unknown): Work {
+  const w = object(value);
+  return {
+    state: text(w.state),
+    error: text(w.error),
+    stage: text(w.stage),
+    percent: number(w.percent),
+    seconds: number(w.seconds),
+    number: number(w.number),
+  };
+}
+
+export function factsOf(value: unknown): Facts | null {
+  const f = object(value);
+  if (!Array.isArray(f.openings)) return null;
+  const neck = object(f.neck);
+  return {
+    triangles: number(f.triangles_given),
+    sizeMm: point(f.size_mm),
+    openings: list(f.openings).map((o) => ({
+      centre: point(o.centre),
+      normal: point(o.normal),
+      calibreMm: number(o.calibre_mm),
+    })),
+    confidence: number(neck.confidence),
+    proposals: list(neck.proposals).map((p) => ({
+      method: text(p.method),
+      diameterMm: number(p.diameter_mm),
+      agreement: number(p.agreement),
+      planar: p.planar === true,
+      centre: point(p.centre),
+      normal: point(p.normal),
+    })),
+    problem: text(f.problem),
+    notes: list(f.notes).map((n) => ({ kind: text(n.kind), text: text(n.text), advice: text(n.advice) })),
+  };
+}
+
+function builtOf(value: unknown): Built | null {
+  const b = object(value);
+  if (!Array.isArray(b.exercises)) return null;
+  const [report, clip] = [object(b.report), object(b.clip)];
+  const [neck, step, clipping] = [object(report.neck), object(report.step_ms), object(report.clipping)];
+  const grade = numberOrNull(clipping.grade);
+  return {
+    current: b.current === true,
+    number: text(b.number),
+    neckMm: number(neck.diameter_mm),
+    confidence: list(neck.proposals).length > 0 ? number(neck.confidence) : null,
+    overlapMm: Object.entries(object(report.overlap_mm)).map(([what, mm]) => ({ what, mm: number(mm) })),
+    stepMs: number(step.p50),
+    budgetMs: number(step.budget),
+    clip: text(clip.name),
+    clipping: grade === null ? null : { grade, remnantPct: number(clipping.remnant_pct) },
+    problems: list(report.problems).map((p) => ({
+      id: text(p.id),
+      text: text(p.text),
+      whatToDo: text(p.what_to_do),
+    })),
+    exercises: b.exercises.map(text),
+  };
+}
+
+export function projectOf(json: unknown): Project {
+  const p = object(json);
+  const [inspect, play] = [object(p.inspect), object(p.play)];
+  return {
+    name: text(p.name),
+    file: text(p.file),
+    choices: choicesOf(p.choices),
+    undo: p.undo === true,
+    redo: p.redo === true,
+    command: text(p.command),
+    inspect: workOf(inspect),
+    facts: factsOf(inspect.facts),
+    build: workOf(p.build),
+    built: builtOf(p.built),
+    play: { state: text(play.state), url: text(play.url), error: text(play.error) },
+  };
+}
+
+/** What the gateway may answer, for the catalogues (viewer/gateway: studio, studio_choices, surface_kind). */
+export const refusals = (): string[] => [
+  message('this file is no surface: STL, OBJ, PLY, OFF, glTF and VTP are taken'),
+  message('this file is empty'),
+  message('this file is too large: 220 MB are taken'),
+  message('this glTF needs other files: write it as one .glb file'),
+  message('this VTK file holds no surface: write it as PolyData (.vtp)'),
+  message('this case is being built'),
+  message('the file must be read first'),
+  message('the case is at work; wait, or cancel it'),
+  message('the project cannot be written: is the disk full?'),
+  message('only for pages on this machine and instructors'),
+  message('exercises are played at the machine of the case builder'),
+];
+
+/** An act that changes a project. */
+export type Act = 'choose' | 'undo' | 'redo' | 'build' | 'cancel' | 'play';
+
+export class StudioApi {
+  private readonly api: Api;
+
+  constructor(private readonly base: URL) {
+    this.api = new Api(base);
+  }
+
+  async projects(): Promise<{ projects: Listed[]; mostBytes: number }> {
+    const json = object(await this.api.ask('studio/projects'));
+    const projects = list(json.projects).map((p) => ({
+      name: text(p.name),
+      file: text(p.file),
+      built: p.built === true,
+    }));
+    return { projects, mostBytes: number(json.most_bytes) };
+  }
+
+  project = async (name: string): Promise<Project> => projectOf(await this.api.ask('studio/project', { name }));
+  act = async (name: string, act: Act, more: object = {}): Promise<Project> =>
+    projectOf(await this.api.ask(`studio/${act}`, {}, { name, ...more }));
+  remove = async (name: string): Promise<void> => void (await this.api.ask('studio/remove', {}, { name }));
+
+  /** kind: 'surface', 'side', 'front', 'fissure' or 'report'. version: another one is another file. */
+  file(name: string, kind: string, version: string | number): string {
+    const url = new URL(`api/studio/${kind}`, this.base);
+    url.search = new URLSearchParams({ name, version: String(version) }).toString();
+    return url.href;
+  }
+
+  /** A new project. */
+  async upload(file: File): Promise<Project> {
+    const url = new URL(`api/studio/upload?file=${encodeURIComponent(file.name)}`, this.base);
+    const answer = await fetch(url, { method: 'PUT', body: file });
+    const json: unknown = await answer.json().catch(() => ({}));
+    if (answer.ok) return projectOf(json);
+    throw new Error(
+      said(text(object(json).error)) || message('the gateway answered {status}', { status: answer.status }),
+    );
+  }
+}

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One project: the surface on the left, the steps from the file to the exercises on the right. Every choice goes to the
+// gateway at once, which keeps it.
+import { el, setText } from '../hud/dom';
+import { text } from '../languages/text';
+import type { Act, Project, StudioApi } from './api';
+import { BuildPanel } from './build_panel';
+import { CasePanel } from './case_panel';
+import { FilePanel } from './file_panel';
+import { NeckPanel } from './neck_panel';
+import { chosenPlane } from './neck_plane';
+import { ResultPanel } from './result_panel';
+import { SurfaceView } from './surface_view';
+import { reason } from './wording';
+
+const everyMs = 600;
+
+/** What the panels ask for. */
+export interface Asks {
+  /** Changes choices. */
+  choose(choices: object): void;
+  act(act: Act, more?: object): Promise<Project | null>;
+}
+
+export class Editor {
+  readonly root = el('div', { class: 'editor' });
+  private readonly say = el('p', { class: 'say', role: 'alert' });
+  private readonly undo = el('button', { type: 'button' }, text('Undo'));
+  private readonly redo = el('button', { type: 'button' }, text('Redo'));
+  private readonly title = el('h2', {});
+  private readonly view = new SurfaceView();
+  private readonly panels: { root: HTMLElement; show(p: Project): void }[];
+  private readonly neck: NeckPanel;
+  private shown = '';
+  private surface = 0;
+  private timer = 0;
+  private ended = false;
+  private project: Project | null = null;
+  private readonly keys = (e: KeyboardEvent) => this.key(e);
+
+  constructor(
+    private readonly api: StudioApi,
+    private readonly name: string,
+  ) {
+    const asks: Asks = {
+      choose: (choices) => void this.act('choose', { choices }),
+      act: (act, more) => this.act(act, more),
+    };
+    this.neck = new NeckPanel(asks, this.view, () => this.project && this.mark(this.project));
+    this.panels = [
+      new FilePanel(asks),
+      this.neck,
+      new CasePanel(asks),
+      new BuildPanel(asks),
+      new ResultPanel(asks, api),
+    ];
+    this.undo.onclick = () => void this.act('undo');
+    this.redo.onclick = () => void this.act('redo');
+    setText(this.title, name);
+    const bar = el('div', { class: 'bar' }, this.title, this.undo, this.redo, this.say);
+    const side = el('div', { class: 'steps' }, ...this.panels.map((p) => p.root));
+    this.root.append(bar, el('div', { class: 'columns' }, this.view.root, side));
+    window.addEventListener('keydown', this.keys);
+    void this.follow();
+  }
+
+  end(): void {
+    this.ended = true;
+    window.clearTimeout(this.timer);
+    window.removeEventListener('keydown', this.keys);
+    this.view.end();
+  }
+
+  private key(e: KeyboardEvent): void {
+    const typing = e.target instanceof HTMLInputElement && e.target.type === 'text';
+    if (!(e.ctrlKey || e.metaKey) || typing || e.key.toLowerCase() !== 'z') return;
+    e.preventDefault();
+    void this.act(e.shiftKey ? 'redo' : 'undo');
+  }
+
+  private async act(act: Act, more: object = {}): Promise<Project | null> {
+    try {
+      const project = await this.api.act(this.name, act, more);
+      setText(this.say, '');
+      this.show(project);
+      return project;
+    } catch (e) {
+      setText(this.say, reason(e));
+      return null;
+    }
+  }
+
+  private async follow(): Promise<void> {
+    try {
+      const project = await this.api.project(this.name);
+      if (this.ended) return;
+      this.show(project);
+    } catch (e) {
+      setText(this.say, reason(e));
+    }
+    if (!this.ended) this.timer = window.setTimeout(() => void this.follow(), everyMs);
+  }
+
+  /** Panels are written anew only when something has changed, so that they keep the focus. */
+  private show(project: Project): void {
+    const now = JSON.stringify(project);
+    if (now === this.shown) return;
+    this.shown = now;
+    this.project = project;
+    this.undo.disabled = !project.undo;
+    this.redo.disabled = !project.redo;
+    for (const panel of this.panels) panel.show(project);
+    void this.showSurface(project);
+  }
+
+  private async showSurface(project: Project): Promise<void> {
+    if (!project.facts) return;
+    const { number } = project.inspect;
+    if (number !== this.surface) {
+      this.surface = number;
+      const url = this.api.file(project.name, 'surface', number);
+      await this.view.load(url, chosenPlane(project.choices, project.facts)).catch((e: unknown) => {
+        setText(this.say, reason(e));
+      });
+    }
+    if (!this.ended) this.mark(this.project ?? project);
+  }
+
+  private mark({ facts, choices }: Project): void {
+    if (!facts) return;
+    this.view.mark(facts, CasePanel.inletOf(facts, choices), this.neck.plane(choices, facts), this.neck.points);
+  }
+}

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The surface with its openings and its neck, to be turned and clicked on. Millimetres.
+import {
+  AmbientLight,
+  type BufferGeometry,
+  Color,
+  DirectionalLight,
+  DoubleSide,
+  Group,
+  Mesh,
+  MeshStandardMaterial,
+  type Object3D,
+  PerspectiveCamera,
+  Raycaster,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { PLYLoader } from 'three/examples/jsm/loaders/PLYLoader.js';
+import { el } from '../hud/dom';
+import { text } from '../languages/text';
+import type { Facts, Point } from './api';
+import { ball, ring, solidDisc } from './marks';
+import type { NeckPlane } from './neck_plane';
+
+const stillPx = 4; // a press that moves farther turns the view
+const fieldOfView = 35;
+const colours = { wall: '#c8756b', inlet: '#5aa9ff', outlet: '#9fd0a8', neck: '#ffffff', point: '#ffd54a' };
+
+export class SurfaceView {
+  readonly canvas = el('canvas', { tabindex: '0', role: 'img' });
+  readonly root = el('div', { class: 'view' }, this.canvas);
+  private readonly renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true });
+  private readonly scene = new Scene();
+  private readonly camera = new PerspectiveCamera(fieldOfView, 1, 0.1, 2000);
+  private readonly marks = new Group();
+  private readonly lamp = new DirectionalLight('#ffffff', 2.2);
+  private controls: OrbitControls | null = null;
+  private surface: Mesh | null = null;
+  private pressed = new Vector2();
+  private waiting = false;
+  private readonly watch = new ResizeObserver(() => this.resize());
+  /** Gets the points that are clicked on the surface; null: clicks only turn it. */
+  onPoint: ((p: Vector3) => void) | null = null;
+
+  constructor() {
+    this.canvas.setAttribute('aria-label', text('The vessel with its openings and the plane of the neck'));
+    this.scene.background = new Color('#14181c');
+    this.camera.add(this.lamp);
+    this.scene.add(this.camera, new AmbientLight('#ffffff', 0.7), this.marks);
+    this.canvas.addEventListener('pointerdown', (e) => this.pressed.set(e.clientX, e.clientY));
+    this.canvas.addEventListener('pointerup', (e) => this.released(e));
+    this.watch.observe(this.root);
+    Object.assign(window, {
+      __studio: { screenOf: (p: Point) => this.screenOf(p), ready: () => this.surface !== null },
+    });
+  }
+
+  end(): void {
+    this.watch.disconnect();
+    this.controls?.dispose();
+    this.renderer.dispose();
+  }
+
+  /** Shows another surface, seen from the side of the neck with the dome up. */
+  async load(url: string, neck: NeckPlane | null): Promise<void> {
+    const geometry = await new PLYLoader().loadAsync(url);
+    geometry.computeVertexNormals();
+    geometry.computeBoundingSphere();
+    if (this.surface) {
+      this.scene.remove(this.surface);
+      this.surface.geometry.dispose();
+    }
+    this.surface = new Mesh(
+      geometry,
+      new MeshStandardMaterial({ color: colours.wall, roughness: 0.55, side: DoubleSide }),
+    );
+    this.scene.add(this.surface);
+    this.stand(geometry, neck?.normal ?? new Vector3(0, 0, 1));
+  }
+
+  private stand(geometry: BufferGeometry, up: Vector3): void {
+    const { center, radius } = geometry.boundingSphere!;
+    const side = new Vector3(up.y, up.z, up.x).cross(up).normalize().addScaledVector(up, 0.3).normalize();
+    const far = (1.1 * radius) / Math.sin((fieldOfView / 2) * (Math.PI / 180));
+    this.camera.up.copy(up);
+    this.camera.position.copy(center).addScaledVector(side, far);
+    this.camera.near = far / 100;
+    this.camera.far = 10 * far;
+    this.camera.updateProjectionMatrix();
+    this.controls?.dispose();
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.target.copy(center);
+    this.controls.addEventListener('change', () => this.draw());
+    this.controls.listenToKeyEvents(this.canvas);
+    this.controls.update();
+    this.resize();
+  }
+
+  /** points: those clicked so far. inlet: index of the opening where blood comes in. */
+  mark(facts: Facts, inlet: number, neck: NeckPlane | null, points: readonly Vector3[]): void {
+    const marks: Object3D[] = facts.openings.map((o, k) =>
+      ring(
+        new Vector3(...o.centre),
+        new Vector3(...o.normal),
+        o.calibreMm / 2,
+        k === inlet ? colours.inlet : colours.outlet,
+      ),
+    );
+    if (neck) marks.push(...solidDisc(neck.centre, neck.normal, 1.25 * neck.radius, colours.neck));
+    marks.push(...points.map((p) => ball(p, Math.hypot(...facts.sizeMm) / 120, colours.point)));
+    this.marks.clear();
+    this.marks.add(...marks);
+    this.draw();
+  }
+
+  private released(e: PointerEvent): void {
+    if (!this.onPoint || !this.surface || this.pressed.distanceTo(new Vector2(e.clientX, e.clientY)) > stillPx) return;
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const at = new Vector2(((e.clientX - left) / width) * 2 - 1, 1 - ((e.clientY - top) / height) * 2);
+    const ray = new Raycaster();
+    ray.setFromCamera(at, this.camera);
+    const hit = ray.intersectObject(this.surface)[0];
+    if (hit) this.onPoint(hit.point.clone());
+  }
+
+  /** Place of a point on the page, px. */
+  private screenOf(p: Point): [number, number] {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const at = new Vector3(...p).project(this.camera);
+    return [left + ((at.x + 1) / 2) * width, top + ((1 - at.y) / 2) * height];
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.root;
+    if (width === 0 || height === 0) return;
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /** Once a frame at most. */
+  private draw(): void {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.renderer.render(this.scene, this.camera);
+    });
+  }
+}

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the case builder says for its command line, as what to do on this page. Its messages are English.
+import { said } from '../languages/said';
+
+/** Options in messages of tools/case_builder, and what stands for them here. In this order. */
+const here: readonly [RegExp, string][] = [
+  [/; --any-size takes it all the same/g, ''],
+  [/insula case wall FOLDER --vertices (\d+)( --on)?/g, 'choose $1 vertices and build again'],
+  [/insula case intake FOLDER INPUT --rebuild "([\d.]+ mm)" --on/g, 'make the surface anew from a grid of $1'],
+  [/insula case wall FOLDER --neck "[^"]*"( --on)?/g, 'set the neck by two clicks and build again'],
+  [/insula case wall FOLDER --neck \.\.\. --on/g, 'choose one of them'],
+  [/: --neck "[^"]*" \(a point in the neck and the direction to the dome\)/g, ' by clicks'],
+  [/ ?\(--neck, --neck-points\)/g, ' by two clicks'],
+  [/ with --neck "[^"]*" or --neck-points/g, ' by two clicks'],
+  [/ with --rebuild "([\d.]+ mm)"/g, ' of $1'],
+  [/ ?\(--vertices (\d+)\)/g, ' ($1)'],
+  [/: give --unit (\w+)/g, ': choose the unit $1'],
+  [/with --unit if/g, 'if'],
+  [/^--neck-points: /g, ''],
+];
+
+/** A message of the case builder for somebody who has no command line. */
+export function forThePage(words: string): string {
+  return here.reduce((all, [option, action]) => all.replace(option, action), words);
+}
+
+/** Why something was refused. */
+export const reason = (e: unknown): string => (e instanceof Error ? forThePage(said(e.message)) : String(e));

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A case is made on the page of the case builder, with the real programs: a surface is dropped, the neck is set by
+// clicks, the case is built, builder and gateway are killed in between, and the exercise is played. Exit status 77: no
+// browser or no programs, skipped.
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { axeFinds } from './axe.mjs';
+import { check, launch, patience, waitFor } from './browser.mjs';
+import { ownBus, Programs, root } from './programs.mjs';
+import { childrenOf, gatewayBelow } from './studio_processes.mjs';
+
+const programs = new Programs();
+const data = mkdtempSync(join(tmpdir(), 'insula_studio_'));
+const surface = readFileSync(join(root, 'meshes/arteries/narrow_neck/wall.ply'));
+const bus = ownBus();
+
+async function shot(page, name) {
+  if (!process.env.INSULA_SHOTS) return;
+  await page.screenshot({ path: join(process.env.INSULA_SHOTS, `studio_${name}.png`), fullPage: true });
+}
+
+const dropped = (page, name, bytes) =>
+  page.evaluate(
+    ({ file, base64 }) => {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], file));
+      document.querySelector('.drop').dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
+    },
+    { file: name, base64: bytes.toString('base64') },
+  );
+
+const project = (page, name) => page.evaluate(async (n) => (await fetch(`api/studio/project?name=${n}`)).json(), name);
+
+/** Two points of the wall on opposite sides of the proposed neck, as they lie on the page. */
+async function sidesOfNeck(page, { centre, normal, diameter_mm: width }) {
+  return page.evaluate(
+    ({ c, n, w }) => {
+      const at = (p) => window.__studio.screenOf(p);
+      // Across the neck, and as far across the view as the plane admits.
+      const helper = Math.abs(n[0]) < 0.8 ? [1, 0, 0] : [0, 1, 0];
+      const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+      const unit = (v) => v.map((x) => x / Math.hypot(...v));
+      const u = unit(cross(n, helper));
+      const v = cross(n, u);
+      let best = null;
+      for (let k = 0; k < 36; k++) {
+        const [x, y] = [Math.cos((k * Math.PI) / 18), Math.sin((k * Math.PI) / 18)];
+        const side = u.map((ui, i) => x * ui + y * v[i]);
+        const ends = [-0.42, 0.42].map((s) => at(c.map((ci, i) => ci + s * w * side[i])));
+        const apart = Math.hypot(ends[0][0] - ends[1][0], ends[0][1] - ends[1][1]);
+        if (!best || apart > best.apart) best = { apart, ends };
+      }
+      return best.ends;
+    },
+    { c: centre, n: normal, w: width },
+  );
+}
+
+let studio;
+const start = async () => {
+  studio = programs.start('insula', ['studio', '--no-browser', '--port', '0', '--data', data], bus);
+  return programs.told(studio, /studio is at (\S+)/);
+};
+
+const browser = await launch();
+try {
+  let { address } = await start();
+  const page = await browser.newPage({ viewport: { width: 1366, height: 900 } });
+  await page.goto(address);
+  await page.getByText('There are no projects yet.').waitFor(patience);
+  assert.deepEqual(await axeFinds(page), []);
+  await shot(page, 'empty');
+
+  await dropped(page, 'picture.stl', Buffer.from('\x89PNG\r\n\x1a\n'));
+  await page.getByText('this file is no surface').waitFor(patience);
+  check('a file that is no surface is refused, whatever its name says');
+
+  await dropped(page, 'narrow neck.ply', surface);
+  await page.getByText('Three methods agree').waitFor(patience);
+  await page.waitForFunction(() => window.__studio.ready(), null, patience);
+  const before = await project(page, 'narrow_neck');
+  const { facts } = before.inspect;
+  assert.ok(facts.openings.length >= 3 && facts.triangles_given > 3000, JSON.stringify(facts).slice(0, 300));
+  assert.match(await page.locator('.steps').innerText(), /3,276 triangles[^]*openings/);
+  assert.deepEqual(await axeFinds(page), []);
+  await shot(page, 'surface');
+  check('a dropped surface is shown with its openings and the proposed neck');
+
+  const proposal = facts.neck.proposals[0];
+  await page.getByRole('button', { name: 'Set the neck by clicks' }).click();
+  for (const [x, y] of await sidesOfNeck(page, proposal)) await page.mouse.click(x, y);
+  await page.getByText('set by clicks', { exact: true }).waitFor(patience);
+  const { neck } = (await project(page, 'narrow_neck')).choices;
+  const width = Math.hypot(...[0, 1, 2].map((k) => neck.points[k] - neck.points[k + 3]));
+  assert.ok(width > 0.4 * proposal.diameter_mm && width < 1.6 * proposal.diameter_mm, `${width} mm between the clicks`);
+  await shot(page, 'neck');
+  check(`the neck is set by two clicks, ${width.toFixed(1)} mm apart`);
+
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.waitForFunction(() => document.querySelector('input[name=neck]').checked, null, patience);
+  await page.getByRole('button', { name: 'Redo' }).click();
+  await page.getByText('set by clicks', { exact: true }).waitFor(patience);
+  check('a choice is undone and made again');
+
+  // The clipping trial takes minutes.
+  await page.getByLabel('Play the exercises until scripted hands succeed').uncheck();
+  const chosen = (await project(page, 'narrow_neck')).choices;
+  await page.getByRole('button', { name: 'Build', exact: true }).click();
+  await page.locator('.stages .now').waitFor(patience);
+  await waitFor('builder', () => childrenOf(gatewayBelow(studio.pid)).length > 0);
+  process.kill(childrenOf(gatewayBelow(studio.pid))[0], 'SIGKILL');
+  await page.getByText(/signal 9 .*nothing of your project is lost/).waitFor(patience);
+  await shot(page, 'killed');
+  check('a builder that is killed is told of');
+
+  await page.getByRole('button', { name: 'Build', exact: true }).click();
+  await waitFor('builder', () => childrenOf(gatewayBelow(studio.pid)).length > 0);
+  const orphan = childrenOf(gatewayBelow(studio.pid))[0];
+  programs.mayEnd(studio);
+  const [gateway, supervisor] = [gatewayBelow(studio.pid), studio.pid];
+  process.kill(supervisor, 'SIGKILL');
+  process.kill(gateway, 'SIGKILL');
+  await waitFor('end of the builder', () => !childrenOf(1).includes(orphan) && !childrenOf(gateway).includes(orphan));
+  ({ address } = await start());
+  await page.goto(`${address}#narrow_neck`);
+  await page.getByText('The build was interrupted').waitFor(patience);
+  assert.deepEqual((await project(page, 'narrow_neck')).choices, chosen);
+  check('a gateway that is killed loses nothing');
+
+  const began = performance.now();
+  await page.getByRole('button', { name: 'Build', exact: true }).click();
+  await page.locator('.stages .now').waitFor(patience);
+  await shot(page, 'building');
+  await page.getByText('5. The result').waitFor(patience);
+  const seconds = ((performance.now() - began) / 1000).toFixed(0);
+  const result = await page.locator('.result').innerText();
+  assert.match(result, /Neck\s+\d\.\d+ mm wide[^]*Time of a step\s+[\d.]+ ms of [\d.]+ ms/);
+  await page.waitForFunction(
+    () => [...document.querySelectorAll('.pictures img')].every((i) => i.complete && i.naturalWidth > 0),
+    null,
+    patience,
+  );
+  assert.deepEqual(await axeFinds(page), []);
+  await shot(page, 'result');
+  check(`the case is built in ${seconds} s and its report shown`);
+
+  const [played] = await Promise.all([
+    page.waitForEvent('popup'),
+    page.locator('[data-exercise="3_clipping.xml"]').click(),
+  ]);
+  await played.waitForURL(/^http/, patience);
+  await played.waitForFunction(() => window.__insula?.ready, null, patience);
+  await shot(played, 'played');
+  const cases = programs.insula(['cases', '--data', data]);
+  assert.match(cases, /narrow_neck\s.*4 exercises, added/);
+  check('the case is added, and its exercise opens');
+} finally {
+  await browser.close();
+  await programs.end();
+  rmSync(data, { recursive: true, force: true });
+}
