@@ -119,7 +119,7 @@ FORMS = (
     ),
     Elsewhere(r"\./insula studio", "StudioTest.ACaseIsBuilt", "the browser test `studio` uses the page"),
     Elsewhere(
-        r"\./insula cases add scenes/cases/my_case --replace",
+        r"\./insula cases add scenes/cases/my_case",
         "CasesCommand.TheFolderOfABuiltCaseIsAdded",
         "needs a built case",
     ),
