@@ -202,7 +202,8 @@ void BloodFlow::average(double h) {
   const double share = blood_pressure->beat_share(h);
   for (std::size_t s = 0; s < beat_flow_.size(); ++s) beat_flow_[s] += share * flow_of(graph_.stretches[s], int(s));
   beat_share_ += share;
-  if (blood_pressure->phase() + share < 1) return;
+  const bool beat_over = blood_pressure->beating() ? blood_pressure->phase() + share >= 1 : beat_share_ >= 1;
+  if (!beat_over) return;
   for (std::size_t s = 0; s < beat_flow_.size(); ++s) {
     mean_flow_[s] = beat_flow_[s] / beat_share_;
     beat_flow_[s] = 0;
@@ -220,6 +221,7 @@ void BloodFlow::append_vessels(std::vector<VesselState>& out) const {
     v.flow_at_rest = rest_flow_[i];
     v.lumen = s.narrowest;
     v.dye = dye(i);  // as published
+    v.heart_rests = blood_pressure->rests();
     out.push_back(v);
   }
 }

@@ -11,12 +11,13 @@ namespace insula {
 
 /// State of a stretch of a vessel, or of the sac.
 struct VesselState {
-  std::string_view id;      ///< of the network element: "superior", "sac"; valid as long as the simulation
-  double pressure = 0;      ///< present value, Pa
-  double flow = 0;          ///< m3/s, mean of the last heartbeat
-  double flow_at_rest = 0;  ///< m3/s, the same before any tool touched the vessel
-  double lumen = 1;         ///< narrowest cross-section over its own at rest
-  double dye = 0;           ///< concentration of indocyanine green, 0..1
+  std::string_view id;       ///< of the network element: "superior", "sac"; valid as long as the simulation
+  double pressure = 0;       ///< present value, Pa
+  double flow = 0;           ///< m3/s, mean of the last heartbeat
+  double flow_at_rest = 0;   ///< m3/s, the same before any tool touched the vessel
+  double lumen = 1;          ///< narrowest cross-section over its own at rest
+  double dye = 0;            ///< concentration of indocyanine green, 0..1
+  bool heart_rests = false;  ///< the heart pauses or recovers from it: the flow says nothing of the lumen
 };
 
 /// A component that has stretches of vessel.

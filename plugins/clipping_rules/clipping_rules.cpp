@@ -16,6 +16,8 @@ with a new release. While a released clip lies on the neck and the goal is not r
 `fault_slipped` counts shut blades that move on the vessel by more than `limit`, because they hold too little of it or
 because the applier pulls at them. Motion of the whole neck, by pulse and by other tools, does not count.
 
+While the heart pauses (`adenosine_pause`) no flow is judged. A goal is neither reached nor lost by it.
+
 `fault_stenosis` counts a branch whose flow falls below `limit` for longer than `grace` while no temporary clip is on,
 neither released nor shut in an applier. It counts the branch again once it has flowed for as long. Hints on it wait for
 two seconds after a temporary clip, since flow is the mean of a heartbeat and is still low then.
@@ -46,6 +48,10 @@ const VesselState* find(const std::vector<VesselState>& vessels, std::string_vie
 
 /// Flow over that at rest, as a claim to a person: flow back through a closed branch counts as none.
 double flow_share(const VesselState& v) { return v.flow_at_rest != 0 ? std::max(0.0, v.flow / v.flow_at_rest) : 1; }
+
+bool heart_rests(const std::vector<VesselState>& vessels) {
+  return std::any_of(vessels.begin(), vessels.end(), [](const VesselState& v) { return v.heart_rests; });
+}
 
 bool temporary_on(const std::vector<ClipState>& clips) {
   return std::any_of(clips.begin(), clips.end(), [](const ClipState& c) { return c.temporary && c.is_on(); });
@@ -224,9 +230,10 @@ class GoalClipped final : public ExerciseRule {
     const bool good = j.clips > 0 && shut && j.grade <= max_grade() && open && applications >= min_applications_;
     held_ = good ? held_ + r.h : 0;
     if (good && held_ >= hold()) log.goal(goal_, r.time);
-    if (!good && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
+    const bool resting = shut && heart_rests(vessels);
+    if (!good && !resting && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
     missing.temporary = !missing.shut && !missing.remnant && missing.branch >= 0 && temporary_on(clips);
-    if (j.clips == 0 || good) missing = {};
+    if (j.clips == 0 || good || resting) missing = {};
     say(missing, j, r, log);
     failed_ = log.state() == ExerciseState::failed;
   }
@@ -326,9 +333,9 @@ class FaultStenosis final : public ExerciseRule, public WatchesLimits {
   std::vector<WatchedLimit> watched_limits() const override { return flows_; }
   bool watches_now() const override { return since_temporary_ >= flow_known_s; }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    const bool temporary = temporary_on(clips_.now());
-    since_temporary_ = temporary ? 0 : since_temporary_ + r.h;
     const std::vector<VesselState>& vessels = vessels_.now();
+    const bool temporary = temporary_on(clips_.now()) || heart_rests(vessels);
+    since_temporary_ = temporary ? 0 : since_temporary_ + r.h;
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const VesselState* b = find(vessels, names_[i]);
       const bool low = b && !temporary && flow_share(*b) < limit();

@@ -104,8 +104,18 @@ void BloodPressure::add_gradient(BlockMatrix& a, double scale) const {
   chambers_.add_second_derivative(on->q(), excess_, scale, a);
 }
 
+bool BloodPressure::set_pause(HeartPause* pause) {
+  if (pause_ && pause_ != pause) return false;
+  pause_ = pause;
+  return true;
+}
+
 double BloodPressure::arterial(double h) const {
-  const double next = phase_ + h * rate_;
+  return pause_ ? pause_->arterial(h, beat_pressure(h)) : beat_pressure(h);
+}
+
+double BloodPressure::beat_pressure(double h) const {
+  const double next = phase_ + step_beats(h);
   return diastolic_now_ + (systolic_now_ - diastolic_now_) * wave_.value(next - std::floor(next));
 }
 
@@ -196,12 +206,13 @@ void BloodPressure::finish(const StepContext& context, const ConstraintSolution&
   if (feed_) finish_feed(context, solution);
   else std::fill(pressure_.begin(), pressure_.end(), arterial(context.h));
   fill();
-  const double next = phase_ + context.h * rate_;
+  const double next = phase_ + step_beats(context.h);
   phase_ = next - std::floor(next);
   const double follow = response() > 0 ? 1 - std::exp(-context.h / response()) : 1;
   systolic_now_ += follow * (systolic_wanted_ - systolic_now_);
   diastolic_now_ += follow * (diastolic_wanted_ - diastolic_now_);
   rate_ += follow * (rate_wanted_ - rate_);
+  if (pause_) pause_->advance(context.h, beat_pressure(0));
 }
 
 void BloodPressure::finish_feed(const StepContext& context, const ConstraintSolution& solution) {

@@ -26,6 +26,18 @@ class ChamberFeed {
   virtual void settle(const StepContext& context, const double* pressure, const double* yielding) = 0;
 };
 
+/// Something that makes the heart pause: it stands between the beat and the arteries.
+class HeartPause {
+ public:
+  virtual ~HeartPause() = default;
+  virtual bool beating() const = 0;  ///< in the coming step
+  virtual bool acting() const = 0;   ///< the arteries have another pressure than that of the beat
+  /// Pressure of the arteries after `h` of the coming step, from that of the beating heart, Pa.
+  virtual double arterial(double h, double of_beat) const = 0;
+  /// The step is over. of_beat: pressure of the beating heart at its end, Pa.
+  virtual void advance(double h, double of_beat) = 0;
+};
+
 class BloodPressure final : public Constraint, public FollowerLoad, public StatesLaw {
  public:
   static constexpr std::string_view kind_name = "pressure";
@@ -107,6 +119,10 @@ class BloodPressure final : public Constraint, public FollowerLoad, public State
   /// Called before the first step with the network that feeds the chambers.
   void set_feed(ChamberFeed* feed);
   bool fed() const { return feed_ != nullptr; }
+  /// Called before the first step. False if something else makes the heart pause already.
+  bool set_pause(HeartPause* pause);
+  bool beating() const { return !pause_ || pause_->beating(); }
+  bool rests() const { return pause_ && pause_->acting(); }  ///< flow says nothing of the lumen meanwhile
 
   const Chambers& chambers() const { return chambers_; }
   double wave_mean() const {
@@ -115,7 +131,8 @@ class BloodPressure final : public Constraint, public FollowerLoad, public State
   double imaged_pressure() const { return imaged_at() > 0 ? imaged_at() : wave_mean(); }  ///< of the arteries, Pa
   double arterial(double h) const;         ///< pressure of the arteries at the end of the coming step, Pa
   double phase() const { return phase_; }  ///< of the heart, 0..1, 0 the start of systole
-  double beat_share(double h) const { return h * rate_; }                          ///< number of beats in a step
+  /// Number of beats in a step; of a heart that rests, the number that it would make.
+  double beat_share(double h) const { return h * rate_; }
   double pressure(int chamber) const { return pressure_[std::size_t(chamber)]; }   ///< on its wall in the last step, Pa
   double volume(int chamber) const { return chambers_.volume(chamber, on->q()); }  ///< now, m3
   double rest_volume(int chamber) const { return rest_volume_[std::size_t(chamber)]; }
@@ -137,6 +154,8 @@ class BloodPressure final : public Constraint, public FollowerLoad, public State
   std::string run_command(std::string_view name, std::string_view argument) override;
 
  private:
+  double beat_pressure(double h) const;  ///< of the beating heart after h, Pa
+  double step_beats(double h) const { return beating() ? h * rate_ : 0; }
   bool make_chambers(PrepareContext& context);
   bool read_groups(PrepareContext& context, std::vector<std::vector<std::string>>& groups) const;
   void add_row(ConstraintBuilder& builder, int k, Block block, double violation);
@@ -149,6 +168,7 @@ class BloodPressure final : public Constraint, public FollowerLoad, public State
   Chambers chambers_;
   PulseWave wave_;
   ChamberFeed* feed_ = nullptr;
+  HeartPause* pause_ = nullptr;
   bool connected_ = false, good_ = false, prestressed_ = false;
   double area_ = 1;
   std::vector<double> rest_volume_;

@@ -27,6 +27,8 @@ export const engineTexts = (): string[] => [
   text('the applier lies on the tray; take it up first'),
   text('systolic pressure cannot be below diastolic'),
   text('diastolic pressure cannot be above systolic'),
+  text('the last dose of adenosine still acts'),
+  text('no more adenosine: the total would be too high'),
   text('nothing bleeds'),
   text('it bleeds already'),
   text('no new problem from the engine: forces are off'),
