@@ -195,7 +195,7 @@ TEST_F(SupervisorTest, AnOfferTakesOverWhenItIsReady) {
   Supervisor* running = nullptr;
   bool offered = false, taken = false;
   settings_.look = [&] {
-    if (offered || count("worker started") == 0) return;
+    if (offered || !std::filesystem::exists(file("up"))) return;
     offered = true;
     Supervisor::Offer offer;
     // The old one must be gone before the new one is told to go.
@@ -209,8 +209,8 @@ TEST_F(SupervisorTest, AnOfferTakesOverWhenItIsReady) {
   settings_.look_s = 0.01;
   Supervisor s = make();
   running = &s;
-  ChildSpec old =
-      shell("worker", "trap 'sleep 0.1; echo gone > " + file("old") + "; exit 0' TERM; while :; do sleep 0.01; done");
+  ChildSpec old = shell("worker", "trap 'sleep 0.1; echo gone > " + file("old") + "; exit 0' TERM; echo > " +
+                                      file("up") + "; while :; do sleep 0.01; done");
   old.ends_session = true;
   s.add(std::move(old));
   EXPECT_EQ(s.run(), 0);
