@@ -204,6 +204,13 @@ export function runningOf(json: unknown): Running {
   };
 }
 
+/** What an answer of the gateway holds. A refusal is thrown as an Error with its text. */
+export async function contentOf(answer: Response): Promise<unknown> {
+  const json: unknown = await answer.json().catch(() => ({}));
+  if (answer.ok) return json;
+  throw new Error(text(object(json).error) || message('the gateway answered {status}', { status: answer.status }));
+}
+
 /** The gateway's answers. A refusal is thrown as an Error with its text. */
 export class Api {
   constructor(private readonly base: URL) {}
@@ -217,10 +224,7 @@ export class Api {
       address,
       body ? { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(body) } : {},
     );
-    const json: unknown = await answer.json().catch(() => ({}));
-    if (!answer.ok)
-      throw new Error(text(object(json).error) || message('the gateway answered {status}', { status: answer.status }));
-    return json;
+    return contentOf(answer);
   }
 
   exercises = async (): Promise<Exercise[]> => exercisesOf(await this.ask('exercises'));

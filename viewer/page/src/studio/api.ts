@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the page of the case builder asks the gateway for, and checks before use (viewer/gateway/studio.h).
-import { said } from '../languages/said';
 import { text as message } from '../languages/text';
-import { Api, list, number, numberOrNull, object, text } from '../start/api';
+import { Api, contentOf, list, number, numberOrNull, object, text } from '../start/api';
 
 export type Point = [number, number, number];
 
@@ -262,11 +261,6 @@ export class StudioApi {
   /** A new project. */
   async upload(file: File): Promise<Project> {
     const url = new URL(`api/studio/upload?file=${encodeURIComponent(file.name)}`, this.base);
-    const answer = await fetch(url, { method: 'PUT', body: file });
-    const json: unknown = await answer.json().catch(() => ({}));
-    if (answer.ok) return projectOf(json);
-    throw new Error(
-      said(text(object(json).error)) || message('the gateway answered {status}', { status: answer.status }),
-    );
+    return projectOf(await contentOf(await fetch(url, { method: 'PUT', body: file })));
   }
 }
