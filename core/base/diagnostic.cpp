@@ -6,6 +6,8 @@
 #include <cctype>
 #include <set>
 
+#include "core/base/text.h"
+
 namespace insula {
 
 void Diagnostics::error(const SourcePos& pos, std::string text) {
@@ -93,6 +95,10 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
     }
   }
   return best;
+}
+
+std::string did_you_mean(std::string_view near) {
+  return near.empty() ? std::string() : "; did you mean " + in_quotes(near) + "?";
 }
 
 }  // namespace insula

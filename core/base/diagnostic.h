@@ -41,5 +41,7 @@ class Diagnostics {
 
 /// The candidate nearest to `word` by edit distance, or empty if none is near enough.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates);
+/// The end of a message: "; did you mean "near"?", or nothing if `near` is empty.
+std::string did_you_mean(std::string_view near);
 
 }  // namespace insula

@@ -56,7 +56,7 @@ void SceneBuilder::unresolved(const RefParamBase& ref, const std::string& id) {
   std::string near = nearest_name(id, fitting);
   if (near.empty()) near = nearest_name(id, all);
   std::string text = missing;
-  if (!near.empty()) text += "; did you mean \"" + near + "\"?";
+  if (!near.empty()) text += did_you_mean(near);
   else if (!fitting.empty() && fitting.size() <= 12) text += " (there are: " + joined(fitting) + ")";
   diagnostics_.error(ref.pos(), text);
 }

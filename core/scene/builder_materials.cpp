@@ -25,7 +25,7 @@ void SceneBuilder::join_materials() {
     if (std::find(names.begin(), names.end(), name) != names.end()) return {};
     const std::string near = nearest_name(name, names);
     return in_quotes(name) + " is no material" +
-           (near.empty() ? " (there are: " + joined(names) + ")" : "; did you mean \"" + near + "\"?");
+           (near.empty() ? " (there are: " + joined(names) + ")" : did_you_mean(near));
   };
   for (Component* c : scene_->in_order_) {
     for (const ParamBase* p : c->params())

@@ -80,9 +80,8 @@ class Expander {
     for (const auto& a : e.attributes) {
       if (std::find(known.begin(), known.end(), a.name) != known.end()) continue;
       const std::string near = out_.suggestions.afford(known.size()) ? nearest_name(a.name, known) : "";
-      diagnostics_.error(a.name_pos,
-                         "<" + e.name + "> has no parameter " + in_quotes(a.name) +
-                             (near.empty() ? " (it has: " + joined(known) + ")" : "; did you mean \"" + near + "\"?"));
+      diagnostics_.error(a.name_pos, "<" + e.name + "> has no parameter " + in_quotes(a.name) +
+                                         (near.empty() ? " (it has: " + joined(known) + ")" : did_you_mean(near)));
     }
   }
 

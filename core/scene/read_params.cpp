@@ -37,7 +37,7 @@ void read_params(const Element& element, ParamSet& set, Suggestions& suggestions
     if (!p) {
       const std::string near = suggestions.afford(names.size()) ? nearest_name(a.name, names) : "";
       std::string text = "<" + element.name + "> has no parameter " + in_quotes(a.name);
-      if (!near.empty()) text += "; did you mean \"" + near + "\"?";
+      if (!near.empty()) text += did_you_mean(near);
       else if (names.empty()) text += "; it has none";
       else text += " (it has: " + first_names(names) + ")";
       report(a.name_pos, text);

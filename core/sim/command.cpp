@@ -50,8 +50,7 @@ std::string Simulation::exchange(std::string_view argument) {
     if (i->hand_index() == hand) ids.push_back(i->id);
   if (!wanted || wanted->hand_index() != hand) {
     const std::string near = nearest_name(std::string(name), ids);
-    return "no tool " + in_quotes(name) + " for the " + std::string(side) + " hand" +
-           (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?");
+    return "no tool " + in_quotes(name) + " for the " + std::string(side) + " hand" + did_you_mean(near);
   }
   if (wanted->active()) return {};
   Instrument* held = instrument_of(hand);
@@ -79,8 +78,7 @@ std::string Simulation::ask(std::string_view argument) {
     names.push_back(c.name);
   }
   const std::string near = nearest_name(std::string(name), names);
-  return in_quotes(id) + " has no command " + in_quotes(name) +
-         (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?");
+  return in_quotes(id) + " has no command " + in_quotes(name) + did_you_mean(near);
 }
 
 }  // namespace insula

@@ -27,9 +27,7 @@ void Complications::connect(PrepareContext& context, const Simulation& simulatio
       for (const Component* other : simulation.scene().components())
         if (!other->commands().empty()) ids.push_back(other->id);
       const std::string near = nearest_name(words[0], ids);
-      c->error(
-          context, c->command,
-          "no component has the id " + in_quotes(words[0]) + (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+      c->error(context, c->command, "no component has the id " + in_quotes(words[0]) + did_you_mean(near));
       continue;
     }
     std::vector<std::string> names;
@@ -38,7 +36,7 @@ void Complications::connect(PrepareContext& context, const Simulation& simulatio
     const std::string near = nearest_name(words[1], names);
     c->error(context, c->command,
              "<" + target->element + "> has no command " + in_quotes(words[1]) +
-                 (!near.empty()   ? "; did you mean \"" + near + "\"?"
+                 (!near.empty()   ? did_you_mean(near)
                   : names.empty() ? "; it has none"
                                   : " (it has: " + joined(names) + ")"));
   }

@@ -84,8 +84,7 @@ void read_command(const Reader& at, double time, std::string_view rest, Motion& 
   c.verb = stripped(rest.substr(0, comma));
   if (std::find(verbs.begin(), verbs.end(), c.verb) == verbs.end()) {
     const std::string near = nearest_name(c.verb, {verbs.begin(), verbs.end()});
-    at.fail(fmt::format("verb: \"{}\" is none of exchange, ask, message{}", c.verb.substr(0, 40),
-                        near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+    at.fail(fmt::format("verb: \"{}\" is none of exchange, ask, message{}", c.verb.substr(0, 40), did_you_mean(near)));
   }
   c.argument = unquoted(at, stripped(rest.substr(comma + 1)));
   if (c.argument.empty()) at.fail(fmt::format("{} needs an argument", c.verb));

@@ -173,7 +173,7 @@ fs::path find_motion(const Simulation& simulation, const std::string& wanted) {
   if (fs::is_regular_file(wanted)) return fs::absolute(wanted);
   std::string text = "no motion \"" + wanted + "\"";
   const std::string near = nearest_name(wanted, ids);
-  if (!near.empty()) text += "; did you mean \"" + near + "\"?";
+  if (!near.empty()) text += did_you_mean(near);
   else if (!ids.empty()) {
     text += "; this scene has";
     for (const auto& id : ids) text += " " + id;

@@ -88,8 +88,7 @@ void AnchorSprings::attach(PrepareContext& context, DeformableBody& body) {
     }
     const std::string near = nearest_name(word, names);
     error(context, regions,
-          in_quotes(word) + " is no region of the wall" + (near.empty() ? "" : "; did you mean \"" + near + "\"?") +
-              " (it has " + joined(names) + ")");
+          in_quotes(word) + " is no region of the wall" + did_you_mean(near) + " (it has " + joined(names) + ")");
   }
   const std::vector<Vec3>& rest = shell->rest_nodes();
   std::vector<double> area(rest.size(), 0.0);

@@ -33,9 +33,7 @@ bool BloodFlow::find_ends(PrepareContext& context) {
     }
   if (inlet_node_ < 0) {
     const std::string near = nearest_name(inlet(), names);
-    error(context, inlet,
-          "no centreline leads to an opening " + in_quotes(inlet()) +
-              (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
+    error(context, inlet, "no centreline leads to an opening " + in_quotes(inlet()) + did_you_mean(near));
     return false;
   }
   std::erase_if(outlets_, [&](const Outlet& o) { return o.node == inlet_node_; });

@@ -180,9 +180,9 @@ class CircleOfWillis final : public Constraint {
       const ChannelEntry* entry = simulation.channels().find(channel);
       if (!entry || entry->size() != 1) {
         const std::string near = nearest_name(channel, simulation.channels().ids());
-        return error(context, narrowed,
-                     "no component publishes the channel " + in_quotes(channel) + " as one number" +
-                         (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
+        return error(
+            context, narrowed,
+            "no component publishes the channel " + in_quotes(channel) + " as one number" + did_you_mean(near));
       }
       segment->narrow_length = narrow_length();
       lumens_.push_back({index_of(*segment), entry});
@@ -250,8 +250,7 @@ class CircleOfWillis final : public Constraint {
     std::vector<std::string> names;
     for (const auto& s : network_.segments) names.push_back(s.name);
     const std::string near = nearest_name(name, names);
-    error(context, param,
-          "there is no segment " + in_quotes(name) + (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
+    error(context, param, "there is no segment " + in_quotes(name) + did_you_mean(near));
     return nullptr;
   }
   bool set_diameters(PrepareContext& context) {

@@ -236,8 +236,7 @@ std::string ClipApplier::load(std::string_view wanted) {
     std::vector<std::string> ids;
     for (const Clip* c : clips()) ids.push_back(c->id);
     const std::string near = nearest_name(std::string(wanted), ids);
-    return "no clip " + in_quotes(wanted) + " for this applier" +
-           (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?");
+    return "no clip " + in_quotes(wanted) + " for this applier" + did_you_mean(near);
   }
   Clip* const c = *found;
   if (c == clip_) return {};

@@ -68,7 +68,7 @@ std::vector<std::string> vessel_names(PrepareContext& context, const Component& 
       const std::string near = nearest_name(name, known);
       rule.error(context, param,
                  in_quotes(name) + " is no centreline of \"" + vessel.id + "\"" +
-                     (near.empty() ? "; it has " + joined(known) : "; did you mean " + in_quotes(near) + "?"));
+                     (near.empty() ? "; it has " + joined(known) : did_you_mean(near)));
     }
     out.push_back(name);
   }

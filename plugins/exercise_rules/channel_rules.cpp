@@ -23,9 +23,7 @@ void check_event(PrepareContext& context, const Simulation& simulation, const Co
     for (const EventKind* e : c->event_kinds()) known.push_back(e->name());
   if (std::find(known.begin(), known.end(), event()) != known.end()) return;
   const std::string near = nearest_name(event(), known);
-  owner.error(context, event,
-              "no component of the scene has the event " + in_quotes(event()) +
-                  (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
+  owner.error(context, event, "no component of the scene has the event " + in_quotes(event()) + did_you_mean(near));
 }
 
 bool ChannelWatch::find(PrepareContext& context, const Simulation& simulation, const Component& rule,
@@ -33,10 +31,9 @@ bool ChannelWatch::find(PrepareContext& context, const Simulation& simulation, c
   entry_ = simulation.channels().find(channel());
   if (entry_) return true;
   const std::string near = nearest_name(channel(), simulation.channels().ids());
-  rule.error(
-      context, channel,
-      "no component publishes the channel " + in_quotes(channel()) +
-          (near.empty() ? "; `insula describe NAME` lists those of an element" : "; did you mean \"" + near + "\"?"));
+  rule.error(context, channel,
+             "no component publishes the channel " + in_quotes(channel()) +
+                 (near.empty() ? "; `insula describe NAME` lists those of an element" : did_you_mean(near)));
   return false;
 }
 

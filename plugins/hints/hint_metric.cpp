@@ -78,9 +78,7 @@ class HintMetric final : public Hint {
       }
     }
     const std::string near = nearest_name(metric(), known);
-    error(context, metric,
-          "the exercise has no single metric " + in_quotes(metric()) +
-              (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
+    error(context, metric, "the exercise has no single metric " + in_quotes(metric()) + did_you_mean(near));
   }
   HintReading read(const StepReport& report) override {
     due_s_ -= report.h;

@@ -97,7 +97,7 @@ class HintRule final : public LimitHint {
     const std::string near = nearest_name(rule(), known);
     error(context, rule,
           "the exercise has no rule " + in_quotes(rule()) + " with a limit" +
-              (!near.empty()   ? "; did you mean " + in_quotes(near) + "?"
+              (!near.empty()   ? did_you_mean(near)
                : known.empty() ? ""
                                : " (it has " + joined(known) + ")"));
   }

@@ -12,8 +12,7 @@ void PerfusionInput::find(PrepareContext& context, const Simulation& simulation)
   if (!entry_) {
     const std::string near = nearest_name(channel_(), simulation.channels().ids());
     return owner_.error(context, channel_,
-                        "no component publishes the channel " + in_quotes(channel_()) +
-                            (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
+                        "no component publishes the channel " + in_quotes(channel_()) + did_you_mean(near));
   }
   const std::string_view quantity = entry_->channel->quantity().name;
   if (entry_->size() != 1 || (quantity != Perfusion::name && quantity != FlowRate::name && quantity != Scalar::name))

@@ -121,8 +121,7 @@ bool Membrane::choose_regions(PrepareContext& context, const ShellBody& shell) {
     }
     const std::string near = nearest_name(word, names);
     error(context, regions,
-          in_quotes(word) + " is no region of the wall" + (near.empty() ? "" : "; did you mean \"" + near + "\"?") +
-              " (it has " + joined(names) + ")");
+          in_quotes(word) + " is no region of the wall" + did_you_mean(near) + " (it has " + joined(names) + ")");
     good = false;
   }
   return good;

@@ -48,9 +48,7 @@ bool BloodPressure::read_groups(PrepareContext& context, std::vector<std::vector
     for (const std::string& r : g) {
       if (on->region(r) < 0) {
         const std::string near = nearest_name(r, model.regions);
-        error(context, regions,
-              in_quotes(on->id) + " has no region " + in_quotes(r) +
-                  (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
+        error(context, regions, in_quotes(on->id) + " has no region " + in_quotes(r) + did_you_mean(near));
         good = false;
       } else if (std::find(seen.begin(), seen.end(), r) != seen.end()) {
         error(context, regions, "region " + in_quotes(r) + " is named twice");

@@ -32,7 +32,7 @@ class RegionTouchMetric final : public MetricSet {
         const std::string near = nearest_name(std::string(word), model.regions);
         error(context, regions,
               in_quotes(word) + " is no region of the vessel" +
-                  (near.empty() ? "; it has " + joined(model.regions) : "; did you mean " + in_quotes(near) + "?"));
+                  (near.empty() ? "; it has " + joined(model.regions) : did_you_mean(near)));
         continue;
       }
       wanted[std::size_t(region)] = 1;

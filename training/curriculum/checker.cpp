@@ -34,7 +34,7 @@ void CurriculumChecker::error(const CurriculumElement& element, const ParamBase&
 std::string CurriculumChecker::suggestion(const std::string& name, const std::vector<std::string>& names) {
   if (names.empty() || !suggestions_.afford(names.size())) return {};
   const std::string near = nearest_name(name, names);
-  return near.empty() ? " (there are: " + first_names(names) + ")" : "; did you mean \"" + near + "\"?";
+  return near.empty() ? " (there are: " + first_names(names) + ")" : did_you_mean(near);
 }
 
 Curriculum CurriculumChecker::check(const CurriculumRoot& root) {

@@ -150,8 +150,7 @@ std::string CurriculumReader::missing(const RefParamBase& reference, const std::
   std::vector<std::string> fitting;
   for (const auto& [name, element] : by_id_)
     if (element->element == kind) fitting.push_back(name);
-  if (const std::string near = nearest_name(id, fitting); !near.empty())
-    return text + "; did you mean \"" + near + "\"?";
+  if (const std::string near = nearest_name(id, fitting); !near.empty()) return text + did_you_mean(near);
   return fitting.empty() ? text : text + " (there are: " + first_names(fitting) + ")";
 }
 
