@@ -36,6 +36,8 @@ constexpr Units<2> perfusion{{{"m3/s/kg", 1}, {"ml/100g/min", 1e-5 / 60}}};
 constexpr Units<4> viscosity{{{"Pa s", 1}, {"mPa s", 1e-3}, {"Pas", 1, false}, {"mPas", 1e-3, false}}};
 constexpr Units<4> impulse{{{"N s", 1}, {"mN s", 1e-3}, {"Ns", 1, false}, {"mNs", 1e-3, false}}};
 constexpr Units<2> force_rate{{{"N/s", 1}, {"mN/s", 1e-3}}};
+constexpr Units<2> power{{{"W", 1}, {"mW", 1e-3}}};
+constexpr Units<1> temperature_rise{{{"K", 1}}};
 }  // namespace
 
 std::span<const Unit> Scalar::units() { return {}; }
@@ -64,13 +66,15 @@ std::span<const Unit> Perfusion::units() { return perfusion; }
 std::span<const Unit> Viscosity::units() { return viscosity; }
 std::span<const Unit> Impulse::units() { return impulse; }
 std::span<const Unit> ForceRate::units() { return force_rate; }
+std::span<const Unit> Power::units() { return power; }
+std::span<const Unit> TemperatureRise::units() { return temperature_rise; }
 
 bool is_known_unit(std::string_view symbol) {
   const std::span<const Unit> all[] = {
-      length,       area,         volume,       duration,           frequency,         rate,      mass,      density,
-      force,        torque,       pressure,     stiffness,          angular_stiffness, damping,   angle,     speed,
-      acceleration, area_density, surface_mass, foundation_modulus, flow_rate,         perfusion, viscosity, impulse,
-      force_rate};
+      length,       area,         volume,          duration,           frequency,         rate,      mass,      density,
+      force,        torque,       pressure,        stiffness,          angular_stiffness, damping,   angle,     speed,
+      acceleration, area_density, surface_mass,    foundation_modulus, flow_rate,         perfusion, viscosity, impulse,
+      force_rate,   power,        temperature_rise};
   for (const auto& units : all)
     for (const auto& u : units)
       if (u.symbol == symbol) return true;

@@ -46,6 +46,8 @@ INSULA_QUANTITY(Perfusion, "perfusion", "m3/s/kg");                // m3/s/kg ml
 INSULA_QUANTITY(Viscosity, "viscosity", "Pa s");                   // Pa s, mPa s
 INSULA_QUANTITY(Impulse, "impulse", "N s");                        // N s mN s
 INSULA_QUANTITY(ForceRate, "rate of force", "N/s");                // N/s mN/s
+INSULA_QUANTITY(Power, "power", "W");                              // W mW
+INSULA_QUANTITY(TemperatureRise, "temperature rise", "K");         // K, above the body's temperature
 #undef INSULA_QUANTITY
 
 /// Whether any quantity has a unit of this symbol. This distinguishes a wrong unit from a mistyped number.

@@ -85,6 +85,13 @@ const UnitCase every_unit[] = {
     {Viscosity::units(), "3.5 mPa s", 3.5e-3},
     {Viscosity::units(), "2 Pas", 2},
     {Viscosity::units(), "2 mPas", 2e-3},
+    {Impulse::units(), "2 N s", 2},
+    {Impulse::units(), "2 mN s", 2e-3},
+    {ForceRate::units(), "2 N/s", 2},
+    {ForceRate::units(), "2 mN/s", 2e-3},
+    {Power::units(), "2 W", 2},
+    {Power::units(), "2 mW", 2e-3},
+    {TemperatureRise::units(), "43 K", 43},
     {Scalar::units(), "0.45", 0.45},
 };
 
@@ -119,7 +126,11 @@ TEST(Quantity, EveryListedUnitIsCoveredAndPositive) {
                            FoundationModulus::units(),
                            FlowRate::units(),
                            Perfusion::units(),
-                           Viscosity::units()}) {
+                           Viscosity::units(),
+                           Impulse::units(),
+                           ForceRate::units(),
+                           Power::units(),
+                           TemperatureRise::units()}) {
     ASSERT_FALSE(units.empty());
     EXPECT_EQ(units.front().to_si, 1.0) << units.front().symbol;
     for (const auto& u : units) {
