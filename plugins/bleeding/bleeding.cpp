@@ -8,6 +8,8 @@ A weak region of a vessel's wall (the bleb) tears in one of these cases:
 - the pressure inside reaches `burst`;
 - the command `rupture` is sent.
 
+Heat closes the tear (<bipolar_forceps>) once little enough blood leaves it, since the jet carries the heat away.
+
 The force is summed over all rows of the step's problem except those of the pressure. Each row contributes the
 magnitude of the force that it puts on the region:
 
@@ -63,9 +65,7 @@ void Bleeding::connect(PrepareContext& context, Simulation& simulation) {
   const int r = on->region(region());
   if (r < 0) {
     const std::string near = nearest_name(region(), on->model().regions);
-    return error(context, region,
-                 in_quotes(on->id) + " has no region " + in_quotes(region()) +
-                     (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
+    return error(context, region, in_quotes(on->id) + " has no region " + in_quotes(region()) + did_you_mean(near));
   }
   zone_.assign(std::size_t(on->nodes()), 0);
   zone_nodes_.clear();
@@ -120,7 +120,7 @@ void Bleeding::tear(const StepContext& context, const char* why, double value) {
   asked_ = false;
   open_ = true;
   stopped_ = false;
-  low_for_ = first_rate_ = lost_ = 0;
+  low_for_ = first_rate_ = lost_ = dose_ = 0;
   since_ = context.time + context.h;
   flow->set_tear(chamber_, tear_area());
   emit(context, ruptured, why, value);
@@ -147,15 +147,34 @@ double Bleeding::blood_of(double h, double out) {
     other_ -= first;
     return out - first / h;
   }
-  const double taken = tear_height() < height() ? std::min(volume_, -h * out) : 0;
+  const double taken = bowl_.height_of(tear_centre()) < height() ? std::min(volume_, -h * out) : 0;
   other_ += -h * out - taken;
   return -taken / h;
 }
 
-double Bleeding::tear_height() const {
-  double sum = 0;
-  for (const int v : zone_nodes_) sum += bowl_.height_of(Eigen::Map<const Vec3>(on->q().data() + 3 * v));
+Vec3 Bleeding::tear_centre() const {
+  Vec3 sum = Vec3::Zero();
+  for (const int v : zone_nodes_) sum += Eigen::Map<const Vec3>(on->q().data() + 3 * v);
   return sum / double(zone_nodes_.size());
+}
+
+std::optional<CoagulationSite> Bleeding::site(int) const {
+  if (!open_) return std::nullopt;
+  return CoagulationSite{tear_centre(), rate_};
+}
+
+bool Bleeding::add_dose(const StepContext& context, int, double dose) {
+  dose_ += dose;
+  if (!open_ || dose_ < 1) return false;
+  seal();
+  if (!stopped_) emit(context, stopped, "", lost_);
+  return true;
+}
+
+void Bleeding::seal() {
+  open_ = false;
+  rate_ = other_ = 0;
+  flow->set_tear(chamber_, 0);
 }
 
 void Bleeding::fill(double h, double blood) {
@@ -194,21 +213,20 @@ void Bleeding::publish() {
   is_open.set(open_);
   load.set(open_ ? std::numeric_limits<double>::quiet_NaN() : std::max(force_ / force(), sharp_ / sharp_force()));
   pool.set(origin() + height() * bowl_.up, bowl_.up, height() > 0 ? radius() : 0, height());  // radius 0: dry
-  Vec3 place = Vec3::Zero(), outward = Vec3::Zero();
+  Vec3 outward = Vec3::Zero();
   const auto at = [&](int node) -> Vec3 { return Eigen::Map<const Vec3>(on->q().data() + 3 * node); };
-  for (const int v : zone_nodes_) place += at(v);
   for (const auto& t : zone_triangles_) outward += (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0]));
-  if (!zone_nodes_.empty()) place /= double(zone_nodes_.size());
   const double length = outward.norm();
   const Vec3 direction = length > 0 ? Vec3(outward / length) : bowl_.up;
   const double strength = std::min(1.0, rate_ / full_jet);
+  const Vec3 place = tear_centre();
   jet.set(0, 0, place, strength);
   jet.set(0, 1, place + 0.01 * direction, strength);
 }
 
 void Bleeding::reset() {
   open_ = asked_ = stopped_ = false;
-  rate_ = lost_ = sucked_rate_ = volume_ = other_ = first_rate_ = low_for_ = force_ = sharp_ = 0;
+  rate_ = lost_ = sucked_rate_ = volume_ = other_ = first_rate_ = low_for_ = force_ = sharp_ = dose_ = 0;
   since_ = -1;
   now_ = 0;
 }
@@ -217,6 +235,7 @@ void Bleeding::append_state(std::vector<double>& out) const {
   out.insert(out.end(),
              {double(open_), double(asked_), double(stopped_), rate_, lost_, volume_, since_, first_rate_, low_for_});
   if (other_ > 0) out.push_back(other_);
+  if (dose_ > 0) out.push_back(dose_);
 }
 
 std::vector<CommandInfo> Bleeding::commands() const {
@@ -231,9 +250,7 @@ std::string Bleeding::run_command(std::string_view name, std::string_view) {
   }
   if (name == "seal") {
     if (!open_) return "nothing bleeds";
-    open_ = false;
-    rate_ = other_ = 0;
-    flow->set_tear(chamber_, 0);
+    seal();
     return {};
   }
   return "unknown command " + in_quotes(name);

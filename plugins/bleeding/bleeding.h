@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "core/mechanics/instrument.h"
+#include "plugins/bipolar_forceps/coagulable.h"
 #include "plugins/bleeding/bleeding_state.h"
 #include "plugins/bleeding/bowl.h"
 #include "plugins/blood_flow/blood_flow.h"
 
 namespace insula {
 
-class Bleeding final : public Constraint, public BleedingSource {
+class Bleeding final : public Constraint, public BleedingSource, public Coagulable {
  public:
   static constexpr std::string_view kind_name = "bleeding";
 
@@ -139,19 +140,25 @@ class Bleeding final : public Constraint, public BleedingSource {
   std::vector<CommandInfo> commands() const override;
   std::string run_command(std::string_view name, std::string_view argument) override;
 
+  // Heat closes the tear while no jet carries the heat away.
+  int site_count() const override { return 1; }
+  std::optional<CoagulationSite> site(int i) const override;
+  bool add_dose(const StepContext& context, int i, double dose) override;
+  double dose(int) const override { return dose_; }
+  bool covers(const Vec3& point) const override { return bowl_.covers(volume_, point); }
+
   bool open() const { return open_; }
   double rate() const { return rate_; }                    ///< of blood out of the tear, m3/s; 0 while it flows back
   double volume() const { return volume_; }                ///< in the field, m3
   double height() const { return bowl_.height(volume_); }  ///< m
-  /// Forces on the region in the last step, N: the sum over contacts and couplings, and the share of instruments with
-  /// an edge.
 
  private:
   void measure_forces(const ConstraintSolution& solution);
   void tear(const StepContext& context, const char* why, double value);
   /// Blood out of the tear, m3/s, for a flow `out` of any fluid. Negative: blood flows back from the pool.
   double blood_of(double h, double out);
-  double tear_height() const;  ///< above the bottom of the field, m
+  Vec3 tear_centre() const;
+  void seal();
   void fill(double h, double blood);
   void tell(const StepContext& context);
   void emit(const StepContext& context, const EventKind& what, const char* text, double value) const;
@@ -170,6 +177,7 @@ class Bleeding final : public Constraint, public BleedingSource {
   double other_ = 0;  ///< fluid in the sac that is not blood: it entered while there was no pool above the tear, m3
   double rate_ = 0, lost_ = 0, sucked_rate_ = 0, volume_ = 0, since_ = -1, first_rate_ = 0, low_for_ = 0, force_ = 0,
          sharp_ = 0;
+  double dose_ = 0;  ///< Arrhenius integral at the tear
 };
 
 }  // namespace insula

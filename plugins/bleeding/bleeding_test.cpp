@@ -131,6 +131,31 @@ TEST(Bleeding, SuctionTakesWhatItsTipReaches) {
   EXPECT_GT(t.state().height, 0.0030);
 }
 
+TEST(Bleeding, HeatClosesTheTear) {
+  Field t;
+  ASSERT_TRUE(t.bleeding) << t.messages;
+  EXPECT_FALSE(t.bleeding->site(0)) << "nothing is torn";
+  ASSERT_EQ(t.s->command("ask", "b rupture"), "");
+  t.run(50);
+  const auto site = t.bleeding->site(0);
+  ASSERT_TRUE(site);
+  EXPECT_EQ(site->washing, t.bleeding->rate());
+  EXPECT_GT(site->washing, 0);
+  EXPECT_GT(site->position.x(), 0.025) << "the bleb";
+  const StepContext context;
+  EXPECT_FALSE(t.bleeding->add_dose(context, 0, 0.6));
+  EXPECT_TRUE(t.bleeding->open());
+  EXPECT_TRUE(t.bleeding->add_dose(context, 0, 0.6));
+  const double lost = t.state().lost;
+  t.run(20);
+  EXPECT_FALSE(t.bleeding->open());
+  EXPECT_EQ(t.state().lost, lost);
+  EXPECT_FALSE(t.bleeding->site(0));
+  ASSERT_EQ(t.s->command("ask", "b rupture"), "");
+  t.run(1);
+  EXPECT_EQ(t.bleeding->dose(0), 0) << "a new tear";
+}
+
 TEST(Bleeding, StopsUnderATemporaryClipAndBeginsAgain) {
   Field t;
   ASSERT_TRUE(t.bleeding) << t.messages;

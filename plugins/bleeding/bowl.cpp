@@ -14,14 +14,17 @@ double Bowl::volume(double h) const {
   return capacity() * x * x;
 }
 
+bool Bowl::covers(double v, const Vec3& p) const {
+  const double high = height_of(p);
+  return v > 0 && high < height(v) && (p - origin - high * up).norm() <= radius;
+}
+
 double suction_takes(const Bowl& bowl, double volume, const std::vector<Instrument*>& tubes, const SuctionRates& rates,
                      double h) {
   double taken = 0;
   for (const Instrument* tube : tubes) {
     if (!tube->active()) continue;
-    const Vec3 tip = tube->pose().p - bowl.origin;
-    const double high = tip.dot(bowl.up);
-    if (high >= bowl.height(volume) || (tip - high * bowl.up).norm() > bowl.radius) continue;
+    if (!bowl.covers(volume, tube->pose().p)) continue;
     taken += h * rates.working * std::max(rates.idle, tube->activity());
   }
   return taken;

@@ -16,6 +16,7 @@ struct Bowl {
   double height(double volume) const;   ///< of the fluid's surface above the bottom, m
   double volume(double height) const;   ///< m3
   double height_of(const Vec3& p) const { return (p - origin).dot(up); }  ///< of a point above the bottom, m
+  bool covers(double volume, const Vec3& p) const;  ///< whether the fluid `volume` stands over this point
 };
 
 constexpr double full_jet = 1e-6;  ///< m3/s: a rate of bleeding that is drawn as the strongest jet

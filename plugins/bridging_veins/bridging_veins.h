@@ -4,12 +4,13 @@
 #include <array>
 #include <vector>
 
+#include "plugins/bipolar_forceps/coagulable.h"
 #include "plugins/bleeding/bowl.h"
 #include "plugins/strand_springs/strand_springs.h"
 
 namespace insula {
 
-class BridgingVeins final : public StrandSprings {
+class BridgingVeins final : public StrandSprings, public Coagulable {
  public:
   Param<Length> along{this,
                       {.name = "along",
@@ -84,6 +85,8 @@ class BridgingVeins final : public StrandSprings {
                          .doc = "a bridging vein was cut or torn",
                          .value = "force of the blade or tension, N",
                          .bad = true}};
+  EventKind vein_closed{this,
+                        {.name = "vein_closed", .doc = "heat closed a whole bridging vein", .value = "1", .bad = true}};
 
   void prepare(PrepareContext& context) override;
   void connect(PrepareContext& context, Simulation& simulation) override;
@@ -95,10 +98,22 @@ class BridgingVeins final : public StrandSprings {
   /// Veins are kept: none of them is among the strands that an exercise asks to divide.
   int strand_count() const override { return 0; }
 
+  // Each vein has three places for heat: its middle while it is whole, then its two stumps.
+  int site_count() const override { return places * count(); }
+  std::optional<CoagulationSite> site(int i) const override;
+  bool add_dose(const StepContext& context, int i, double dose) override;
+  double dose(int i) const override { return doses_[std::size_t(i)]; }
+  bool covers(const Vec3& point) const override { return bowl_.covers(volume_, point); }
+
   double volume() const { return volume_; }  ///< of blood in the field, m3
   int veins_parted() const { return count() - strands_left(); }
+  int open_stumps() const;  ///< of parted veins, that heat has not closed
 
  private:
+  enum Place { middle, from_stump, to_stump, places };
+  double& dose_of(std::size_t vein, Place p) { return doses_[places * vein + std::size_t(p)]; }
+  double dose_of(std::size_t vein, Place p) const { return doses_[places * vein + std::size_t(p)]; }
+  bool bleeds(std::size_t vein, Place stump) const;
   static constexpr int points = 8;  ///< of each of a vein's two lines
   static constexpr int ashore = 5;  ///< of these on the surface; the last one is the lip
   /// From the far end to the lip, on the surface `on`.
@@ -110,10 +125,12 @@ class BridgingVeins final : public StrandSprings {
   void part(const StepContext& context, Strand& s, const EventKind& what, double value) override;
   Course course(const Surface& on, int lip, const Vec3& away) const;
   void draw(std::size_t line, const Course& course, const Strand& s, bool first);
+  static double arch(const Strand& s, double length);  ///< of a slack vein over the straight line between its ends, m
 
   Bowl bowl_;
   std::vector<std::array<Course, 2>> courses_;  ///< one for each vein
   std::vector<Instrument*> tubes_;
+  std::vector<double> doses_;     ///< Arrhenius integrals, `places` for each vein
   double volume_ = 0, lost_ = 0;  ///< m3
 };
 
