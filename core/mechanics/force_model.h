@@ -50,6 +50,10 @@ class ForceModel : public Component {
   /// keeps the result. Called between connect and the first step. Returns false, and does nothing, if the model has no
   /// stress-free configuration of its own (springs to the surroundings).
   virtual bool prestrain(const double*) { return false; }
+  /// Scales the stress-free configuration in all directions: above 1 tissue swells, below 1 it shrinks. Force, tangent
+  /// and energy follow. Called between two steps; reset() keeps the result. Returns false, and does nothing, if the
+  /// model cannot swell.
+  virtual bool set_natural_stretch(double) { return false; }
   /// Rayleigh stiffness damping, s.
   virtual double stiffness_damping() const { return 0; }
   /// Thickness of the wall that the model represents in a region of a shell, m; 0: none. Used for drawing.

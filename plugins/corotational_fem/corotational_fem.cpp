@@ -16,7 +16,11 @@ therefore costs in addition
 
     energy density   stiffening E / 2 (s0 - s)^2           (s < s0; nothing above)
 
-This compression barrier keeps elements under a tool's tip from inverting, and leaves the law elsewhere unchanged. The
+Tissue may swell or shrink (<brain_relaxation>): with the natural stretch a, e becomes S - a I in Hooke's law, so
+
+    energy density   mu |S - I|^2 + lambda/2 tr(S - I)^2 - (2 mu + 3 lambda)(a - 1) tr(S - I)     (less a constant)
+
+The compression barrier keeps elements under a tool's tip from inverting, and leaves the law elsewhere unchanged. The
 exact derivative of Hooke's law adds a term on the spin of the element to the rotated stiffness. `tangent="exact"`
 includes this term with its negative eigenvalues set to zero. Otherwise it is left out.
 
@@ -86,6 +90,10 @@ class CorotationalFem final : public ForceModel {
   void add_mass(std::vector<double>& mass, std::vector<double>& damping) const override;
   void linearise(const double* x, double* force, BlockMatrix* stiffness, double h, Tangent which) override;
   double energy(const double* x) override;
+  bool set_natural_stretch(double a) override {
+    natural_stretch_ = a;
+    return true;
+  }
   double stiffness_damping() const override { return rayleigh_stiffness(); }
   void reset() override;
 
@@ -95,6 +103,7 @@ class CorotationalFem final : public ForceModel {
   BarrierLaw barrier_law() const { return {stiffening() * young(), barrier_stretch()}; }
 
   std::vector<ElementBatch> batches_;
+  double natural_stretch_ = 1;
 };
 
 void CorotationalFem::attach(PrepareContext& context, DeformableBody& body) {
@@ -169,7 +178,9 @@ void CorotationalFem::add_mass(std::vector<double>& mass, std::vector<double>& d
 ElementMaterial CorotationalFem::material() const {
   // No principal stretch is below 1 - |e|. So nearly all elements need no eigenvalues.
   const double far = stiffening() > 0 ? 1 - barrier_stretch() : std::numeric_limits<double>::infinity();
-  return {young() / (2 * (1 + poisson())), young() * poisson() / ((1 + poisson()) * (1 - 2 * poisson())), far * far};
+  const double mu = young() / (2 * (1 + poisson())),
+               lambda = young() * poisson() / ((1 + poisson()) * (1 - 2 * poisson()));
+  return {mu, lambda, far * far, (2 * mu + 3 * lambda) * (natural_stretch_ - 1)};
 }
 
 void CorotationalFem::rotate(const ElementBatch& e, const double* x, ElementWork& work) const {

@@ -19,8 +19,9 @@ struct alignas(64) ElementBatch {
 };
 
 struct ElementMaterial {
-  double mu, lambda;  ///< Pa
-  double far2;        ///< squared norm of the strain above which the barrier may act; infinite: never
+  double mu, lambda;           ///< Pa
+  double far2;                 ///< squared norm of the strain above which the barrier may act; infinite: never
+  double swelling_stress = 0;  ///< (2 mu + 3 lambda)(natural stretch - 1), Pa; compresses what cannot expand
 };
 
 /// Intermediate results that one loop passes to the next.

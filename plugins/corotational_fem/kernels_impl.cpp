@@ -71,7 +71,8 @@ unsigned force(const ElementBatch& b, const ElementMaterial& m, ElementWork& wor
   for (int l = 0; l < batch_lanes; l += W) {
     const Strain e = strain_of(work, l);
     out |= lane_bits(e.norm2 > m.far2) << l;
-    const V volume = load(b.volume + l), two = 2 * m.mu * volume, all_round = m.lambda * volume * e.trace;
+    const V volume = load(b.volume + l), two = 2 * m.mu * volume,
+            all_round = m.lambda * volume * e.trace - m.swelling_stress * volume;
     const V t00 = two * e.e00 + all_round, t11 = two * e.e11 + all_round, t22 = two * e.e22 + all_round;
     const V t01 = two * e.e01, t02 = two * e.e02, t12 = two * e.e12;
     for (int c = 0; c < 3; ++c) {
@@ -100,7 +101,8 @@ unsigned energy(const ElementBatch& b, const ElementMaterial& m, ElementWork& wo
   for (int l = 0; l < batch_lanes; l += W) {
     const Strain e = strain_of(work, l);
     out |= lane_bits(e.norm2 > m.far2) << l;
-    store(work.out[0] + l, load(b.volume + l) * (m.mu * e.norm2 + 0.5 * m.lambda * e.trace * e.trace));
+    store(work.out[0] + l,
+          load(b.volume + l) * (m.mu * e.norm2 + 0.5 * m.lambda * e.trace * e.trace - m.swelling_stress * e.trace));
   }
   return out;
 }
@@ -124,13 +126,13 @@ inline void turn(V& low, V& high, V& off, V& p, V& q, V* from, V* to) {
   }
 }
 
-// Stiffness of the element's spin, R (2 mu I - k (tr(S) I - S)^-1) R^T with k = 2 (2 mu - lambda tr e), symmetric. With
-// `positive`, negative eigenvalues are set to zero.
+// Stiffness of the element's spin, R (2 mu I - k (tr(S) I - S)^-1) R^T with k = 2 (2 mu - lambda tr e +
+// swelling_stress), symmetric. With `positive`, negative eigenvalues are set to zero.
 inline void spin_of(const ElementMaterial& m, const ElementWork& work, int l, bool positive, V g[6]) {
   V s[6], r[9];
   for (int k = 0; k < 6; ++k) s[k] = load(work.s[k] + l);
   for (int k = 0; k < 9; ++k) r[k] = load(work.r[k] + l);
-  const V trace = s[0] + s[1] + s[2], k = 2 * (2 * m.mu - m.lambda * (trace - 3));
+  const V trace = s[0] + s[1] + s[2], k = 2 * (2 * m.mu - m.lambda * (trace - 3) + m.swelling_stress);
   V h[6];
   if (positive) {
     V axis[3][3] = {{all(1), V{}, V{}}, {V{}, all(1), V{}}, {V{}, V{}, all(1)}};  // columns of the eigenvectors
