@@ -80,11 +80,11 @@ TEST_F(Commands, CheckTellsEditorsWhatIsWrongAndWhatWasMeant) {
   const auto problems = nlohmann::json::parse(out_.str())["problems"];
   EXPECT_EQ(problems[0]["file"], bad.generic_string());
   EXPECT_EQ(problems[0]["line"], 1);
-  EXPECT_EQ(problems[0]["column"], 8) << "a required parameter is missing";
-  EXPECT_EQ(problems[1]["column"], 20);
-  EXPECT_EQ(problems[1]["text"], "<test_jelly> has no parameter \"yung\"; did you mean \"young\"?");
-  EXPECT_EQ(problems[1]["nearest"], "young");
-  EXPECT_EQ(problems[2]["nearest"], "test_jelly");
+  ASSERT_EQ(problems.size(), 2u) << problems;
+  EXPECT_EQ(problems[0]["column"], 20);
+  EXPECT_EQ(problems[0]["text"], "<test_jelly> has no parameter \"yung\"; did you mean \"young\"?");
+  EXPECT_EQ(problems[0]["nearest"], "young");
+  EXPECT_EQ(problems[1]["nearest"], "test_jelly");
   EXPECT_EQ(err_.str(), "");
 }
 
@@ -115,7 +115,7 @@ TEST_F(Commands, ListTellsEditorsAllDeclarations) {
     return std::find(children.begin(), children.end(), child) != children.end();
   };
   EXPECT_TRUE(holds("scene", "test_jelly") && holds("test_jelly", "test_inner") && holds("scene", "variable"));
-  EXPECT_FALSE(holds("scene", "test_inner") || holds("test_inner", "include"));
+  EXPECT_FALSE(holds("scene", "test_inner") || holds("view", "include"));
 }
 
 TEST_F(Commands, ListNamesEveryElement) {

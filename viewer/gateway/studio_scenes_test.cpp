@@ -20,7 +20,7 @@ using nlohmann::json;
 constexpr const char* shipped = "<scene>\n  <!-- kept -->\n  <include file=\"part.xml\"/>\n</scene>\n";
 
 /// Copies as `insula cases copy` does. Its check finds one problem in each line with "wrong".
-constexpr const char* scene_program = R"(#!/bin/sh
+constexpr const char* scene_program = R"sh(#!/bin/sh
 here=$(dirname "$0")
 case "$1 $2" in
 "list --scenes") echo "[{\"scene\": \"$here/shipped/first.xml\", \"title\": \"First\"}]";;
@@ -38,7 +38,7 @@ case "$1 $2" in
   exit 2;;
 "view "*) echo "insula: viewer at http://127.0.0.1:8090/"; echo "$2" > "$here/viewed"; exec sleep 100;;
 esac
-)";
+)sh";
 
 class StudioScenesTest : public ::testing::Test {
  protected:
@@ -104,7 +104,7 @@ TEST_F(StudioScenesTest, AShippedSceneIsOpenedAsACopy) {
 
 TEST_F(StudioScenesTest, OnlyScenesOfTheListAreCopied) {
   source();
-  for (const fs::path path : {program_, fs::path("/etc/passwd"), folder_.path() / "bin/shipped"})
+  for (const fs::path& path : {program_, fs::path("/etc/passwd"), folder_.path() / "bin/shipped"})
     EXPECT_EQ(post("scene_open", {{"source", path.string()}}).status, 404) << path;
   folder_.write("bin/full", "");
   const json begun = json::parse(post("scene_open", {{"source", source()}}).json);

@@ -78,7 +78,7 @@ export class TextPanel {
       lintGutter(),
       search({ top: true }),
       keymap.of([...completionKeymap, ...searchKeymap, ...historyKeymap, ...lintKeymap, ...defaultKeymap]),
-      EditorView.contentAttributes.of({ 'aria-label': text('Text of the scene') }),
+      EditorView.contentAttributes.of({ 'aria-label': text('Text of the scene'), tabindex: '0' }),
       EditorView.updateListener.of((update) => {
         if (update.docChanged) hears.changed();
         else if (update.selectionSet) hears.moved(update.state.selection.main.head);
