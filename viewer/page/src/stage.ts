@@ -38,7 +38,7 @@ export class Stage {
     this.scope.addTo(this.scene);
     this.scene.add(this.plain);
     this.lens = new Lens(this.renderer);
-    answerTheFrame(this.scope);
+    answerTheFrame(this);
   }
 
   /** Of the last picture, shadows included. */

@@ -5,9 +5,18 @@ import { el, setText } from '../../hud/dom';
 import { text } from '../../languages/text';
 import { reason } from '../wording';
 import type { SceneCopy, ScenesApi } from './api';
-import { type Seen, viewFrom } from './seen';
+import { placedFrom, type Seen, viewFrom } from './seen';
 
 const waitMs = 500;
+
+export interface Hears {
+  /** Where the microscope stands. */
+  taken(seen: Seen): void;
+  /** Where the point is after a drag, m. */
+  placed(at: readonly number[]): void;
+  /** The picture is there, or gone. */
+  shown(on: boolean): void;
+}
 
 export class LiveView {
   readonly root = el('section', { class: 'live', 'aria-label': text('Picture of the scene') });
@@ -18,24 +27,34 @@ export class LiveView {
   private frame: HTMLIFrameElement | null = null;
   private ended = false;
   private readonly hear = (e: MessageEvent) => {
-    const seen = this.frame && e.source === this.frame.contentWindow ? viewFrom(e.data) : null;
-    if (seen) this.taken(seen);
+    if (!this.frame || e.source !== this.frame.contentWindow) return;
+    const [seen, at] = [viewFrom(e.data), placedFrom(e.data)];
+    if (seen) this.hears.taken(seen);
+    if (at) this.hears.placed(at);
   };
 
-  /** taken: gets where the microscope stands. */
   constructor(
     private readonly api: ScenesApi,
     private readonly name: string,
     private readonly scene: () => string,
-    private readonly taken: (seen: Seen) => void,
+    private readonly hears: Hears,
   ) {
     this.open.onclick = () => void this.start();
     this.close.onclick = () => void this.leave();
-    this.take.onclick = () =>
-      this.frame?.contentWindow?.postMessage({ insula: 'where' }, new URL(this.frame.src).origin);
+    this.take.onclick = () => this.tell({ insula: 'where' });
     this.root.append(el('div', { class: 'buttons' }, this.take, this.close, this.say));
     this.root.hidden = true;
     window.addEventListener('message', this.hear);
+  }
+
+  private tell(message: object): void {
+    this.frame?.contentWindow?.postMessage(message, new URL(this.frame.src).origin);
+  }
+
+  /** Lets a point be moved with the mouse, m; null: none. */
+  place(at: readonly number[] | null): void {
+    this.tell({ insula: 'place', at });
+    if (at) setText(this.say, text('Drag an arrow or a square of the point.'));
   }
 
   end(): void {
@@ -70,11 +89,13 @@ export class LiveView {
     this.frame?.remove();
     this.frame = el('iframe', { src: look.url, title: text('Picture of the scene') });
     this.root.append(this.frame);
+    this.hears.shown(true);
   }
 
   private async leave(): Promise<void> {
     this.frame?.remove();
     this.frame = null;
+    this.hears.shown(false);
     this.root.hidden = true;
     this.open.disabled = false;
     await this.api.leave(this.name).catch(() => undefined);

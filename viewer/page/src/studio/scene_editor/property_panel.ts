@@ -3,7 +3,7 @@
 import { el } from '../../hud/dom';
 import { text } from '../../languages/text';
 import { select } from '../fields';
-import type { Declarations, ElementKind } from './declarations';
+import type { Declarations, ElementKind, Parameter } from './declarations';
 import { attribute, type OutlineElement, pathOf } from './outline';
 import { PropertyRow } from './property_row';
 
@@ -11,6 +11,8 @@ import { PropertyRow } from './property_row';
 export interface Edits {
   /** null: back to the default. */
   set(e: OutlineElement, name: string, value: string | null): void;
+  /** Lets a point be placed with the mouse. */
+  place(e: OutlineElement, p: Parameter): void;
   add(e: OutlineElement, child: ElementKind): void;
   remove(e: OutlineElement): void;
 }
@@ -51,7 +53,11 @@ export class PropertyPanel {
       this.root.append(el('p', { class: 'bad' }, text('There is no such element.')));
     } else {
       this.rows = kind.parameters.map(
-        (p) => new PropertyRow(p, (value) => this.element && this.edits.set(this.element, p.name, value)),
+        (p) =>
+          new PropertyRow(p, {
+            set: (value) => this.element && this.edits.set(this.element, p.name, value),
+            place: () => this.element && this.edits.place(this.element, p),
+          }),
       );
       this.root.append(el('p', { lang: 'en' }, kind.doc), ...this.rows.map((r) => r.root), this.ids);
     }

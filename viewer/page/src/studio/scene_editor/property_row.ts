@@ -4,7 +4,14 @@ import { el, setText } from '../../hud/dom';
 import { text } from '../../languages/text';
 import { select } from '../fields';
 import type { Parameter } from './declarations';
-import { converted, faultOf, joined, partsOf, rangeText } from './values';
+import { converted, faultOf, isPoint, joined, partsOf, rangeText } from './values';
+
+export interface Asks {
+  /** null: back to the default. */
+  set(value: string | null): void;
+  /** A point is to be placed with the mouse. */
+  place(): void;
+}
 
 export class PropertyRow {
   readonly root: HTMLElement;
@@ -16,7 +23,7 @@ export class PropertyRow {
 
   constructor(
     readonly parameter: Parameter,
-    private readonly set: (value: string | null) => void,
+    private readonly asks: Asks,
   ) {
     const id = `parameter-${parameter.name}`;
     this.fault = el('p', { class: 'fault', id: `${id}-fault`, role: 'status' });
@@ -24,6 +31,7 @@ export class PropertyRow {
     this.unit = parameter.units.length > 0 ? this.makeUnit() : null;
     const field = el('div', { class: 'value' }, this.input);
     if (this.unit) field.append(this.unit);
+    if (isPoint(parameter)) field.append(this.makePlace());
     const help = el('p', { class: 'hint', id: `${id}-help` }, el('span', { lang: 'en' }, parameter.doc));
     const facts = this.facts();
     if (facts !== '') help.append(el('br', {}), facts);
@@ -62,11 +70,20 @@ export class PropertyRow {
     return input;
   }
 
+  /** Shown while the picture is. */
+  private makePlace(): HTMLButtonElement {
+    const { name } = this.parameter;
+    const label = text('Place {name} with the mouse', { name });
+    const place = el('button', { type: 'button', class: 'place', title: label, 'aria-label': label }, '✥');
+    place.onclick = () => this.asks.place();
+    return place;
+  }
+
   private makeUnit(): HTMLSelectElement {
     const unit = select(this.parameter.units.map((u) => [u.symbol, u.symbol] as const));
     unit.setAttribute('aria-label', text('Unit of {name}', { name: this.parameter.name }));
     unit.onchange = () => {
-      if (this.value !== null) this.set(converted(this.parameter, this.value, unit.value));
+      if (this.value !== null) this.asks.set(converted(this.parameter, this.value, unit.value));
     };
     return unit;
   }
@@ -114,6 +131,6 @@ export class PropertyRow {
     this.check();
     const { typed } = this;
     // A value that is needed stays in the text, though empty.
-    if (typed !== this.value) this.set(typed === null && this.parameter.required ? '' : typed);
+    if (typed !== this.value) this.asks.set(typed === null && this.parameter.required ? '' : typed);
   }
 }

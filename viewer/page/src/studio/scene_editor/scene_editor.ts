@@ -7,7 +7,7 @@ import { text } from '../../languages/text';
 import { select } from '../fields';
 import { reason } from '../wording';
 import type { Problem, SceneCopy, ScenesApi, SceneText } from './api';
-import type { Declarations } from './declarations';
+import type { Declarations, Parameter } from './declarations';
 import { type Change, changedAttribute, withChild, withoutElement } from './edits';
 import { LiveView } from './live_view';
 import {
@@ -21,10 +21,12 @@ import {
 } from './outline';
 import { ProblemList } from './problems';
 import { PropertyPanel } from './property_panel';
+import type { Seen } from './seen';
 import { TextPanel } from './text_panel';
 import { TreePanel } from './tree_panel';
 import { VersionSelect } from './version_select';
 import { takenView } from './taken_view';
+import { pointOf, pointText } from './values';
 
 const quietMs = 300;
 
@@ -48,6 +50,7 @@ export class SceneEditor {
   private saved = '';
   private timer = 0;
   private choosing = false;
+  private placing: { path: number[]; element: string; parameter: Parameter } | null = null;
 
   static async open(api: ScenesApi, name: string): Promise<SceneEditor> {
     const [copy, declarations] = await Promise.all([api.scene(name), api.declarations()]);
@@ -65,6 +68,7 @@ export class SceneEditor {
     this.content = new TextPanel(declarations, { changed: () => this.changed(), moved: (at) => this.moved(at) });
     this.properties = new PropertyPanel(declarations, {
       set: (e, name, value) => this.change(changedAttribute(this.content.content, e, name, value)),
+      place: (e, p) => this.place(e, p),
       add: (e, child) => this.add(e, withChild(this.content.content, e, child)),
       remove: (e) => {
         this.selected = e.parent ? pathOf(e.parent) : [];
@@ -74,13 +78,11 @@ export class SceneEditor {
     this.versions = new VersionSelect(async (n) =>
       this.content.replace(await api.version(copy.name, this.file.value, n)),
     );
-    this.live = new LiveView(
-      api,
-      copy.name,
-      () => this.scene,
-      (seen) =>
-        void this.trying(takenView(this.api, this.copy, this.file.value, this.content.content, seen, this.writer)),
-    );
+    this.live = new LiveView(api, copy.name, () => this.scene, {
+      taken: (seen) => void this.trying(this.take(seen)),
+      placed: (at) => this.placed(at),
+      shown: (on) => this.root.classList.toggle('looking', on),
+    });
     this.fileChoice();
     this.undo.onclick = () => this.content.undo();
     this.redo.onclick = () => this.content.redo();
@@ -131,6 +133,7 @@ export class SceneEditor {
   private async load(file: string): Promise<void> {
     const got: SceneText = await this.api.file(this.copy.name, file);
     window.clearTimeout(this.timer);
+    this.noPlacing();
     this.file.value = file;
     if (this.copy.scenes.includes(file)) this.scene = file;
     this.saved = got.text;
@@ -186,6 +189,32 @@ export class SceneEditor {
     if (this.content.content === this.saved) setText(this.state, text('Saved'));
   }
 
+  private take(seen: Seen): Promise<void> {
+    return takenView(this.api, this.copy, this.file.value, this.content.content, seen, this.writer);
+  }
+
+  private place(e: OutlineElement, parameter: Parameter): void {
+    const value = attribute(e, parameter.name)?.value ?? parameter.fallback;
+    const at = value === '' ? [0, 0, 0] : pointOf(parameter, value);
+    setText(this.say, at ? '' : text('This value is no point: write numbers and a unit first.'));
+    this.placing = at && { path: pathOf(e), element: e.name, parameter };
+    this.live.place(at);
+  }
+
+  /** Of the element whose point is placed, wherever its tag is now. */
+  private placed(at: readonly number[]): void {
+    const e = this.placing && this.outline && elementOfPath(this.outline, this.placing.path);
+    if (!e || !this.placing || e.name !== this.placing.element) return;
+    const { parameter } = this.placing;
+    const before = attribute(e, parameter.name)?.value ?? parameter.fallback;
+    this.change(changedAttribute(this.content.content, e, parameter.name, pointText(parameter, at, before)));
+  }
+
+  private noPlacing(): void {
+    if (this.placing) this.live.place(null);
+    this.placing = null;
+  }
+
   private change(change: Change | null): void {
     if (change) this.content.change(change);
   }
@@ -197,6 +226,7 @@ export class SceneEditor {
   }
 
   private choose(e: OutlineElement): void {
+    this.noPlacing();
     this.selected = pathOf(e);
     this.choosing = true;
     this.content.select(e.from, e.tagTo);

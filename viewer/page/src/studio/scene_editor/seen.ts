@@ -11,6 +11,12 @@ export interface Seen {
 const length = (m: readonly number[]): string => `${m.map((x) => Number((1000 * x).toFixed(2))).join(' ')} mm`;
 const direction = (v: readonly number[]): string => v.map((x) => Number(x.toFixed(4))).join(' ');
 
+/** A point that was moved with the mouse, m; null: it is no such message. */
+export function placedFrom(data: unknown): number[] | null {
+  const d = object(data);
+  return d.insula === 'placed' && Array.isArray(d.at) && d.at.length === 3 ? d.at.map(number) : null;
+}
+
 /** What the picture answers (src/framed.ts): metres in the scene's frame; null: it is no such answer. */
 export function viewFrom(data: unknown): Seen | null {
   const d = object(data);

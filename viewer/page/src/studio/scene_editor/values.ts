@@ -34,6 +34,22 @@ function inSi(p: Parameter, value: string): number[] | null {
   return factor === undefined ? null : parts.numbers.split(' ').map((n) => Number(n) * factor);
 }
 
+/** Whether it is a point that can be placed with the mouse. */
+export const isPoint = (p: Parameter): boolean => p.numbers === 3 && unitOf(p, 'mm') !== undefined;
+
+/** Metres; null: the value does not tell them, as a variable or a wrong text. */
+export function pointOf(p: Parameter, value: string): number[] | null {
+  const at = faultOf(p, value) === '' ? inSi(p, value) : null;
+  return at?.length === 3 ? at : null;
+}
+
+/** A point in the unit of the value before, to a hundredth of a millimetre. */
+export function pointText(p: Parameter, at: readonly number[], before: string): string {
+  const unit = unitOf(p, partsOf(before)?.unit ?? '') ?? unitOf(p, 'mm')!;
+  const fine = at.map((x) => Number((Number((1e5 * x).toFixed(0)) / 1e5 / unit.toSi).toPrecision(digits)));
+  return joined({ numbers: fine.join(' '), unit: unit.symbol });
+}
+
 /** The same values in another unit. */
 export function converted(p: Parameter, value: string, symbol: string): string {
   const parts = partsOf(value);
