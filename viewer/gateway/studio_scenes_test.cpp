@@ -134,8 +134,8 @@ TEST_F(StudioScenesTest, OnlyTheXmlFilesOfACopyAreReadAndWritten) {
   const std::string name = opened();
   folder_.write("data/scenes/first/scenes/tool.urdf", "<robot/>");
   folder_.write("data/outside.xml", "<scene/>");
-  for (const std::string file : {"../../outside.xml", "/etc/passwd", "scenes/link.xml", "scenes/tool.urdf", "", "scenes",
-                                 "insula_case.json", "scenes/new.xml", "scenes/../scenes/first.xml"}) {
+  for (const std::string file : {"../../outside.xml", "/etc/passwd", "scenes/link.xml", "scenes/tool.urdf", "",
+                                 "scenes", "insula_case.json", "scenes/new.xml", "scenes/../scenes/first.xml"}) {
     EXPECT_EQ(scenes_.get("scene_file", "name=first&file=" + file).status, 404) << file;
     EXPECT_EQ(post("scene_write", {{"name", name}, {"file", file}, {"text", "x"}}).status, 404) << file;
     EXPECT_EQ(

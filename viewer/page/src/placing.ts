@@ -2,6 +2,7 @@
 // A point of the scene that is moved with the mouse, by three arrows and the planes between them.
 import { Mesh, MeshBasicMaterial, type PerspectiveCamera, type Scene, SphereGeometry, Vector3 } from 'three';
 import { TransformControls } from 'three/examples/jsm/controls/TransformControls.js';
+import { status } from './status';
 
 /** What TransformControls takes in place of its own events. */
 const pointer = (e: PointerEvent, canvas: HTMLCanvasElement): PointerEvent => {
@@ -39,6 +40,7 @@ export class Placing {
     this.controls = new TransformControls(camera);
     this.controls.attach(this.ball);
     scene.add(this.ball, this.controls.getHelper());
+    this.tell();
     // Before the page's own gestures, which turn the picture.
     for (const [name, f] of this.hear) window.addEventListener(name, f as EventListener, true);
   }
@@ -48,6 +50,13 @@ export class Placing {
     this.controls.detach();
     this.scene.remove(this.ball, this.controls.getHelper());
     this.controls.dispose();
+    status.placing = null;
+  }
+
+  private tell(): void {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const { x, y } = this.ball.position.clone().project(this.controls.camera);
+    status.placing = [left + ((x + 1) / 2) * width, top + ((1 - y) / 2) * height];
   }
 
   private moved(e: PointerEvent): void {
@@ -67,6 +76,7 @@ export class Placing {
     if (!this.controls.dragging) return;
     e.stopImmediatePropagation();
     this.controls.pointerUp(pointer(e, this.canvas));
+    this.tell();
     this.placed(this.ball.position.clone());
   }
 }

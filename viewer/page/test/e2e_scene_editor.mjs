@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A shipped scene is edited as a copy in the studio, with the real programs: a property is changed and its text with
-// it, a mistake is made and told, taken back, and the scene is looked at while it changes. Exit status 77: no browser or
-// programs, skipped.
+// A shipped scene is edited as a copy in the studio, with the real programs: a property changes its text, a mistake is
+// told and taken back, the scene is looked at while it changes, and a tool is placed with the mouse. Exit status 77: no
+// browser or no programs, skipped.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -18,7 +18,7 @@ const copy = join(data, 'scenes/1_sylvian_fissure/scenes/training/1_sylvian_fiss
 
 async function shot(page, name) {
   if (!process.env.INSULA_SHOTS) return;
-  await page.screenshot({ path: join(process.env.INSULA_SHOTS, `scene_${name}.png`), fullPage: true });
+  await page.screenshot({ path: join(process.env.INSULA_SHOTS, `scene_${name}.png`), timeout: patience.timeout });
 }
 
 const onDisk = (file) => readFileSync(file, 'utf8');
@@ -133,6 +133,26 @@ try {
   await shot(page, 'view_taken');
   assert.deepEqual(await axeFinds(page), []);
   check('the scene is looked at, its view is taken, and the picture is loaded again');
+
+  await item(page, 'dissector', 'right_dissector').click();
+  const home = () => /right_dissector[^]*?home="(\S+) (\S+) (\S+) mm"/.exec(onDisk(copy)).slice(1).map(Number);
+  const before = home();
+  await page.getByRole('button', { name: 'Place home with the mouse' }).click();
+  await page.getByText('Drag an arrow or a square of the point.').waitFor(patience);
+  await seen.waitForFunction(() => window.__insula.placing, null, patience);
+  await shot(page, 'placing');
+  const box = await page.locator('.live iframe').boundingBox();
+  const [x, y] = await seen.evaluate(() => window.__insula.placing);
+  await page.mouse.move(box.x + x, box.y + y);
+  await page.mouse.down();
+  await page.mouse.move(box.x + x - 10, box.y + y - 5, { steps: 3 });
+  await page.mouse.move(box.x + x - 24, box.y + y - 12, { steps: 3 });
+  await page.mouse.up();
+  await waitFor('another home', () => home().join() !== before.join());
+  const moved = Math.hypot(...home().map((c, k) => c - before[k]));
+  assert.ok(moved > 0.5 && moved < 30, `${before} to ${home()}`);
+  await shot(page, 'placed');
+  check(`a tool's home is placed with the mouse, ${moved.toFixed(1)} mm away`);
   assert.equal(onDisk(shipped), original);
 } finally {
   await browser.close();

@@ -2,6 +2,7 @@
 // The scene editor without a page: places in the text, changes that leave all else byte for byte, and values.
 /// <reference types="vite/client" />
 import { describe, expect, it } from 'vitest';
+import { pointOf as framedPoint } from '../src/framed';
 import { type Parameter, declarationsOf } from '../src/studio/scene_editor/declarations';
 import { applied, changedAttribute, withChild, withoutElement } from '../src/studio/scene_editor/edits';
 import {
@@ -13,9 +14,9 @@ import {
   withDescendants,
 } from '../src/studio/scene_editor/outline';
 import { meant } from '../src/studio/scene_editor/problems';
-import { viewFrom } from '../src/studio/scene_editor/seen';
+import { placedFrom, viewFrom } from '../src/studio/scene_editor/seen';
 import { addedView, changedView } from '../src/studio/scene_editor/taken_view';
-import { converted, faultOf, partsOf, rangeText } from '../src/studio/scene_editor/values';
+import { converted, faultOf, isPoint, partsOf, pointOf, pointText, rangeText } from '../src/studio/scene_editor/values';
 
 const scene = `<?xml version="1.0" encoding="UTF-8"?>
 <!-- A comment with <an element/> and an "attribute". -->
@@ -191,6 +192,25 @@ describe('values', () => {
     expect(rangeText(young)).toBe('1 Pa to 1 GPa');
     expect(rangeText(parameter({ max: '3' }))).toBe('at most 3');
     expect(rangeText(home)).toBe('');
+  });
+});
+
+describe('a point', () => {
+  const metres = parameter({ ...home, units: [...home.units, { symbol: 'm', toSi: 1 }] });
+  it('is placed in the unit that it has', () => {
+    expect(isPoint(home)).toBe(true);
+    expect(isPoint(young) || isPoint(parameter({ numbers: 3 }))).toBe(false);
+    expect(pointOf(home, '82.6 25 10.3 mm')!.map((x) => Number(x.toFixed(6)))).toEqual([0.0826, 0.025, 0.0103]);
+    expect(pointOf(home, '$home') ?? pointOf(home, '1 2 mm')).toBeNull();
+    expect(pointText(home, [0.0826004, -0.025, 1e-9], '1 2 3 mm')).toBe('82.6 -25 0 mm');
+    expect(pointText(metres, [0.08261, -0.025, 0], '1 2 3 m')).toBe('0.08261 -0.025 0 m');
+    expect(pointText(home, [0.001, 0, 0], '')).toBe('1 0 0 mm');
+  });
+  it('comes from the picture as three numbers', () => {
+    expect(placedFrom({ insula: 'placed', at: [1, 2, 3] })).toEqual([1, 2, 3]);
+    expect(placedFrom({ insula: 'placed', at: [1, 2] }) ?? placedFrom({ at: [1, 2, 3] })).toBeNull();
+    expect(framedPoint([1, 2, 3])).toEqual([1, 2, 3]);
+    for (const wrong of [null, [1, 2], [1, 2, NaN], [1, 2, '3'], 'place']) expect(framedPoint(wrong)).toBeNull();
   });
 });
 
