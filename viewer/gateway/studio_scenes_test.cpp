@@ -102,6 +102,12 @@ TEST_F(StudioScenesTest, AShippedSceneIsOpenedAsACopy) {
   EXPECT_EQ(get("scenes")["scenes"].size(), 2u);
 }
 
+TEST_F(StudioScenesTest, TheScenesOfABuiltCaseAreOpenedAsACopy) {
+  EXPECT_EQ(json::parse(scenes_.open(folder_.path() / "bin/shipped", "tip").json)["name"], "tip");
+  const json scene = wait("scene", "name=tip", [](const json& j) { return j["state"] == "ready"; });
+  EXPECT_EQ(scene["files"].size(), 2u);
+}
+
 TEST_F(StudioScenesTest, OnlyScenesOfTheListAreCopied) {
   source();
   for (const fs::path& path : {program_, fs::path("/etc/passwd"), folder_.path() / "bin/shipped"})

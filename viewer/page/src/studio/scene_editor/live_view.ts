@@ -87,7 +87,8 @@ export class LiveView {
     }
     setText(this.say, text('It is loaded again whenever the scene is saved.'));
     this.frame?.remove();
-    this.frame = el('iframe', { src: look.url, title: text('Picture of the scene') });
+    // What is wrong is told by the list of problems.
+    this.frame = el('iframe', { src: `${look.url}?nohud`, title: text('Picture of the scene') });
     this.root.append(this.frame);
     this.hears.shown(true);
   }
