@@ -40,6 +40,7 @@ struct Options : insula::CommandLine {
   std::vector<fs::path> scenes;
   bool curriculum = false, no_browser = false, no_reload = false, no_report = false, no_record = false,
        list_only = false;
+  insula::ListOptions list;
   insula::NewPluginOptions new_plugin;
   insula::DevicesOptions devices;
   insula::RunOptions run;
@@ -51,7 +52,10 @@ struct Options : insula::CommandLine {
 /// list, describe, schema, docs: what needs no simulation.
 void add_scene_commands(Options& c) {
   auto* list = c.app.add_subcommand("list", "all elements a scene may hold");
-  list->callback([&c] { c.chosen = [](const auto& x) { return insula::cmd_list(x); }; });
+  list->add_flag("--json", c.list.json, "all about them, as JSON");
+  list->add_flag("--scenes", c.list.scenes, "the exercises instead, as JSON");
+  insula::add_data(*list, c.list.data);
+  list->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_list(x, c.list); }; });
 
   auto* describe = c.app.add_subcommand("describe", "one element and its parameters");
   describe->add_option("name", c.element, "element name")->required();

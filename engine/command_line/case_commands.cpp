@@ -30,6 +30,11 @@ void add_case_commands(CommandLine& line) {
       ->required()
       ->check(CLI::ExistingPath);
   added->add_flag("--replace", o->replace, "in place of an added case of the same name");
+  auto* copy = add("copy", "copy a scene or a built case with all that it needs, to be edited", cmd_cases_copy);
+  copy->add_option("file", o->file, "the scene, or the folder that insula case made")
+      ->required()
+      ->check(CLI::ExistingPath);
+  copy->add_option("folder", o->to, "to be made; its name is that of the copy")->required();
   add("remove", "remove a case that was added", cmd_cases_remove)
       ->add_option("name", o->name, "of the case")
       ->required();

@@ -14,7 +14,8 @@ struct CasesOptions {
   std::filesystem::path data;  ///< folder of the user's data; empty: the platform's
   bool json = false;
   std::string name;            ///< of a case
-  std::filesystem::path file;  ///< archive, folder of a built case, or folder of a page
+  std::filesystem::path file;  ///< archive, folder of a built case, folder of a page, or scene to be copied
+  std::filesystem::path to;    ///< folder of a copy
   bool replace = false;        ///< an added case of the same name
 };
 
@@ -25,6 +26,9 @@ int cmd_cases_pack(const CommandContext& context, const CasesOptions& options);
 /// Adds a packed case, or the folder of a built one. All of its scenes must load. Status 0; 2 if it is refused, and
 /// then nothing has changed.
 int cmd_cases_add(const CommandContext& context, const CasesOptions& options);
+/// Copies a scene, or all scenes of a built case, with every file that they name, to a folder that is not there yet.
+/// They need not load, since a copy is there to be edited. Status 0; 2 if that cannot be done.
+int cmd_cases_copy(const CommandContext& context, const CasesOptions& options);
 /// Removes an added case. Status 0; 2 if there is none of that name.
 int cmd_cases_remove(const CommandContext& context, const CasesOptions& options);
 /// Writes a page of all cases into a folder. Status 0; 2 if a case cannot be packed.

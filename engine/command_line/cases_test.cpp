@@ -77,6 +77,27 @@ TEST_F(CasesCommand, ASceneWithErrorsIsNotAdded) {
   EXPECT_FALSE(fs::exists(options_.data / "cases/broken"));
 }
 
+TEST_F(CasesCommand, ASceneIsCopiedToBeEditedWithAllThatItNames) {
+  folder_.write("own/a.xml", R"(<scene><include file="parts/b.xml"/></scene>)");
+  folder_.write("own/parts/b.xml", R"(<scene><exercise textt="Look."/></scene>)");  // a mistake may be copied
+  options_.file = folder_.path() / "own/a.xml";
+  options_.to = folder_.path() / "copies/mine";
+  ASSERT_EQ(run(cmd_cases_copy), 0) << err_.str();
+  EXPECT_TRUE(fs::is_regular_file(options_.to / "a.xml"));
+  EXPECT_TRUE(fs::is_regular_file(options_.to / "parts/b.xml"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(options_.to.parent_path()), fs::directory_iterator()), 1);
+  EXPECT_EQ(run(cmd_cases_copy), 2) << "it is there already";
+}
+
+TEST_F(CasesCommand, AllScenesOfABuiltCaseAreCopied) {
+  folder_.write("tip/1_a.xml", R"(<scene><exercise title="Tip" text="Look."/></scene>)");
+  folder_.write("tip/2_b.xml", R"(<scene><exercise title="More" text="Look."/></scene>)");
+  options_.file = folder_.path() / "tip";
+  options_.to = folder_.path() / "copies/other_name";
+  ASSERT_EQ(run(cmd_cases_copy), 0) << err_.str();
+  EXPECT_TRUE(fs::is_regular_file(options_.to / "2_b.xml"));
+}
+
 TEST_F(CasesCommand, AnUnknownCaseIsNotPacked) {
   options_.name = "nobody_has_this";
   EXPECT_EQ(run(cmd_cases_pack), 2);

@@ -37,29 +37,43 @@ void check_scenes(const CommandContext& context, const std::vector<fs::path>& sc
   }
 }
 
+/// A file that goes at the end.
+class Passing {
+ public:
+  explicit Passing(fs::path path = {}) : path_(std::move(path)) {}
+  ~Passing() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove(path_, ignored);
+  }
+  Passing(const Passing&) = delete;
+  Passing& operator=(const Passing&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
 /// What is to be added, as an archive: the given one, or one of the given folder, which goes at the end.
 class Packed {
  public:
-  Packed(const fs::path& given, const fs::path& beside) : archive_(given), name_(given.stem().string()) {
-    if (!fs::is_directory(given)) return;
+  Packed(const fs::path& given, const fs::path& beside)
+      : archive_(given),
+        name_(given.stem().string()),
+        made_(fs::is_directory(given) ? beside / ("." + given.filename().string() + ".zip") : fs::path()) {
+    if (made_.path().empty()) return;
     const ListedCase c = built_case(given);
     fs::create_directories(beside);
-    archive_ = made_ = beside / ("." + c.name + ".zip");
+    archive_ = made_.path();
     name_ = c.name;
     pack_listed(c, project_folder(), archive_);
   }
-  ~Packed() {
-    std::error_code ignored;
-    if (!made_.empty()) fs::remove(made_, ignored);
-  }
-  Packed(const Packed&) = delete;
-  Packed& operator=(const Packed&) = delete;
   const fs::path& archive() const { return archive_; }
   const std::string& name() const { return name_; }
 
  private:
-  fs::path archive_, made_;
+  fs::path archive_;
   std::string name_;
+  Passing made_;
 };
 
 /// A case of the same name, out of the way. It comes back if there is none of its name at the end.
@@ -141,6 +155,25 @@ int cmd_cases_add(const CommandContext& context, const CasesOptions& o) {
     }
     fmt::print(context.out, "{} is added: {} exercises, on the start page under cases\n", packed.name,
                packed.scenes.size());
+    return 0;
+  });
+}
+
+int cmd_cases_copy(const CommandContext& context, const CasesOptions& o) {
+  return refusing(context, [&] {
+    const fs::path to = fs::absolute(o.to).lexically_normal(), beside = to.parent_path();
+    const std::string name = to.filename().string();
+    fs::create_directories(beside);
+    const Passing archive(beside / ("." + name + ".zip"));
+    if (fs::is_directory(o.file)) {
+      ListedCase built = built_case(o.file);
+      built.name = name;
+      pack_listed(built, project_folder(), archive.path());
+    } else {
+      pack_case(name, {o.file}, {}, archive.path());
+    }
+    const PackedCase copied = unpack_case(archive.path(), beside);
+    fmt::print(context.out, "{}: {} scenes, {} files\n", to.string(), copied.scenes.size(), copied.files);
     return 0;
   });
 }

@@ -17,8 +17,13 @@ struct CommandContext {
   std::ostream& err;
 };
 
-/// Lists all elements by kind, one line each.
-int cmd_list(const CommandContext& context);
+struct ListOptions {
+  bool json = false, scenes = false;
+  std::filesystem::path data;  ///< folder of the user's data; empty: the platform's
+};
+/// Lists all elements by kind, one line each, or all about them as JSON (engine/authoring/declarations_json.h). With
+/// `scenes`, lists the exercises of the project and of added cases instead, as JSON: [{scene, group, title, text}].
+int cmd_list(const CommandContext& context, const ListOptions& options = {});
 /// Describes one element: its parents and its parameters.
 int cmd_describe(const CommandContext& context, const std::string& element);
 /// Writes the XML schema (XSD 1.0) for editors to a file, or to `out` if the path is empty or "-".

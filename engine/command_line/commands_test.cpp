@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "tools/workbench/workbench.h"
@@ -66,6 +68,54 @@ TEST_F(Commands, CheckReportsAllFiles) {
 TEST_F(Commands, CheckPrintsWarningsOfGoodScenes) {
   EXPECT_EQ(cmd_check(context(), {write("w.xml", "<scene><variable name=\"x\" value=\"1\"/></scene>")}), 0);
   EXPECT_NE(err_.str().find("warning: variable \"x\" is not used"), std::string::npos);
+}
+
+TEST_F(Commands, CheckTellsEditorsWhatIsWrongAndWhatWasMeant) {
+  const auto good = write("good.xml", "<scene><test_jelly young=\"2 kPa\"/></scene>");
+  const auto bad = write("bad.xml", "<scene><test_jelly yung=\"2 kPa\"/><test_jell/></scene>");
+  EXPECT_EQ(cmd_check_json(context(), {good}), 0);
+  EXPECT_EQ(nlohmann::json::parse(out_.str()), (nlohmann::json{{"ok", true}, {"problems", nlohmann::json::array()}}));
+  out_.str("");
+  EXPECT_EQ(cmd_check_json(context(), {bad}), 2);
+  const auto problems = nlohmann::json::parse(out_.str())["problems"];
+  EXPECT_EQ(problems[0]["file"], bad.generic_string());
+  EXPECT_EQ(problems[0]["line"], 1);
+  ASSERT_EQ(problems.size(), 2u) << problems;
+  EXPECT_EQ(problems[0]["column"], 20);
+  EXPECT_EQ(problems[0]["text"], "<test_jelly> has no parameter \"yung\"; did you mean \"young\"?");
+  EXPECT_EQ(problems[0]["nearest"], "young");
+  EXPECT_EQ(problems[1]["nearest"], "test_jelly");
+  EXPECT_EQ(err_.str(), "");
+}
+
+TEST_F(Commands, ListTellsEditorsAllDeclarations) {
+  ListOptions options;
+  options.json = true;
+  EXPECT_EQ(cmd_list(context(), options), 0);
+  const auto elements = nlohmann::json::parse(out_.str())["elements"];
+  const auto find = [](const nlohmann::json& list, const std::string& name) {
+    for (const auto& one : list)
+      if (one["name"] == name) return one;
+    return nlohmann::json();
+  };
+  for (const auto* info : registry_.all()) EXPECT_FALSE(find(elements, info->element).is_null()) << info->element;
+  const auto jelly = find(elements, "test_jelly");
+  const auto young = find(jelly["parameters"], "young"), at = find(jelly["parameters"], "at");
+  EXPECT_EQ(young["required"], true);
+  EXPECT_EQ(young["max"], "1 GPa");
+  EXPECT_EQ(young["numbers"], 1);
+  EXPECT_EQ(young["units"][1]["symbol"], "kPa");
+  EXPECT_EQ(young["units"][1]["to_si"], 1000);
+  EXPECT_EQ(at["default"], "0 0 0 mm");
+  EXPECT_EQ(at["numbers"], 3);
+  EXPECT_EQ(find(jelly["parameters"], "side")["choices"], (nlohmann::json{"left", "right"}));
+  EXPECT_EQ(find(jelly["parameters"], "others")["list"], true);
+  const auto holds = [&](const char* parent, const char* child) {
+    const auto children = find(elements, parent)["children"];
+    return std::find(children.begin(), children.end(), child) != children.end();
+  };
+  EXPECT_TRUE(holds("scene", "test_jelly") && holds("test_jelly", "test_inner") && holds("scene", "variable"));
+  EXPECT_FALSE(holds("scene", "test_inner") || holds("view", "include"));
 }
 
 TEST_F(Commands, ListNamesEveryElement) {

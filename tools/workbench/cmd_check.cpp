@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
 
@@ -39,19 +41,14 @@ std::string cost_text(const std::string& file, Simulation& simulation, const Cos
   return out;
 }
 
-/// One scene: loaded, and put together as for a run, since some mistakes show only there. Returns the lines to print.
-std::string check_one(const std::filesystem::path& file, const Registry& registry, Diagnostics& diagnostics,
-                      std::optional<CostRates>& rates, bool settle) {
+/// One scene: loaded, and put together as for a run, since some mistakes show only there. `good` gets the simulation
+/// and the time, s, for which the scene wants to settle.
+void put_together(const std::filesystem::path& file, const Registry& registry, Diagnostics& diagnostics, bool settle,
+                  const std::function<void(Simulation&, double)>& good) {
   auto loaded = load_scene(file, registry);
   diagnostics = std::move(loaded.diagnostics);
-  if (!loaded.scene) return {};
+  if (!loaded.scene) return;
   check_scene_devices(*loaded.scene, diagnostics);
-  const auto& components = loaded.scene->components();
-  const auto bodies =
-      std::count_if(components.begin(), components.end(), [](const Component* c) { return c->kind == Kind::body; });
-  std::string lines = fmt::format("{}: ok, {} components, {} bodies, content {:016x}\n", file.generic_string(),
-                                  components.size(), bodies, loaded.scene->content_hash());
-  const bool deforms = !loaded.scene->all<DeformableBody>().empty();
   double settling = 0;
   for (SettleSettings* s : loaded.scene->all<SettleSettings>()) {
     settling = s->time();
@@ -59,18 +56,42 @@ std::string check_one(const std::filesystem::path& file, const Registry& registr
   }
   try {
     Simulation simulation(std::move(loaded.scene), diagnostics);
-    if (settling > 0 && !settle) {
-      lines += fmt::format("  settles for {:.3g} s first; with --settle it does so, and the cost of a step is told\n",
-                           settling);
-    } else if (deforms && diagnostics.ok()) {
-      if (!rates) rates = measure_rates(registry);
-      lines += cost_text(file.generic_string(), simulation, *rates);
-    }
+    if (diagnostics.ok()) good(simulation, settling);
   } catch (const std::exception& e) {
     diagnostics.error({file.generic_string(), 0, 0}, e.what());
   }
   diagnostics.sort_by_position();
+}
+
+/// Returns the lines to print.
+std::string check_one(const std::filesystem::path& file, const Registry& registry, Diagnostics& diagnostics,
+                      std::optional<CostRates>& rates, bool settle) {
+  std::string lines;
+  put_together(file, registry, diagnostics, settle, [&](Simulation& simulation, double settling) {
+    const Scene& scene = simulation.scene();
+    const auto& components = scene.components();
+    const auto bodies =
+        std::count_if(components.begin(), components.end(), [](const Component* c) { return c->kind == Kind::body; });
+    lines = fmt::format("{}: ok, {} components, {} bodies, content {:016x}\n", file.generic_string(), components.size(),
+                        bodies, scene.content_hash());
+    if (settling > 0 && !settle) {
+      lines += fmt::format("  settles for {:.3g} s first; with --settle it does so, and the cost of a step is told\n",
+                           settling);
+    } else if (!scene.all<DeformableBody>().empty()) {
+      if (!rates) rates = measure_rates(registry);
+      lines += cost_text(file.generic_string(), simulation, *rates);
+    }
+  });
   return diagnostics.ok() ? lines : std::string();
+}
+
+/// The name in 'did you mean "young"?' or 'did you mean <clip>?'.
+std::string proposed_name(const std::string& text) {
+  constexpr std::string_view asks = "did you mean ";
+  const std::size_t at = text.rfind(asks);
+  if (at == std::string::npos) return {};
+  const std::size_t begin = at + asks.size() + 1, end = text.find_first_of("\">", begin);
+  return end == std::string::npos ? std::string() : text.substr(begin, end - begin);
 }
 
 /// One curriculum, with the scenes and bands that it names.
@@ -105,6 +126,29 @@ int cmd_check(const CommandContext& context, const std::vector<std::filesystem::
     context.out << lines;
   }
   return status;
+}
+
+int cmd_check_json(const CommandContext& context, const std::vector<std::filesystem::path>& files) {
+  auto problems = nlohmann::ordered_json::array();
+  bool ok = true;
+  CurriculumFiles sources(context.registry);
+  for (const auto& file : files) {
+    Diagnostics diagnostics;
+    if (is_curriculum_file(file)) check_curriculum(file, sources, diagnostics);
+    else put_together(file, context.registry, diagnostics, false, [](Simulation&, double) {});
+    ok = ok && diagnostics.ok();
+    for (const Diagnostic& d : diagnostics.all())
+      problems.push_back({{"severity", d.severity == Severity::error ? "error" : "warning"},
+                          {"file", d.pos.file},
+                          {"line", d.pos.line},
+                          {"column", d.pos.column},
+                          {"text", d.text},
+                          {"nearest", proposed_name(d.text)}});
+  }
+  context.out << nlohmann::ordered_json{{"ok", ok}, {"problems", problems}}.dump(
+                     1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+              << '\n';
+  return ok ? 0 : 2;
 }
 
 }  // namespace insula

@@ -21,7 +21,7 @@ struct Options : insula::CommandLine {
   Options() : CommandLine("Insula: scenes checked and measured", "insula") {}
 
   std::vector<fs::path> files;
-  bool settle = false, measure_scaling = false, measure_haptics = false;
+  bool settle = false, check_json = false, measure_scaling = false, measure_haptics = false;
   insula::BenchOptions bench;
   insula::ScalingOptions scaling;
   insula::HapticBenchOptions haptics;
@@ -33,7 +33,12 @@ void add_check(Options& c) {
   check->add_option("file", c.files, "scene and curriculum files")->required();
   check->add_flag("--settle", c.settle,
                   "let scenes settle that do so first: slower, and tells what a step of them costs");
-  check->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_check(x, c.files, c.settle); }; });
+  check->add_flag("--json", c.check_json, "all problems as JSON, for editors; costs are left out");
+  check->callback([&c] {
+    c.chosen = [&](const auto& x) {
+      return c.check_json ? insula::cmd_check_json(x, c.files) : insula::cmd_check(x, c.files, c.settle);
+    };
+  });
 }
 
 void add_haptic_bench(CLI::App& bench, Options& c) {

@@ -16,6 +16,9 @@ namespace insula {
 /// (<settle>) only with `settle` is that done: then what is made after settling and contacts stand, and what a step
 /// costs is known.
 int cmd_check(const CommandContext& context, const std::vector<std::filesystem::path>& files, bool settle = false);
+/// The same without costs, as JSON for editors: {ok, problems: [{severity, file, line, column, text, nearest}]}.
+/// nearest: the name that the text proposes; empty: none.
+int cmd_check_json(const CommandContext& context, const std::vector<std::filesystem::path>& files);
 struct ScalingOptions {
   int threads = 1;
   bool quick = false;  ///< small sizes only

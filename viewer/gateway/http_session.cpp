@@ -24,6 +24,7 @@ constexpr std::uint32_t header_limit = 16 * 1024;
 /// A part that takes longer to read would delay pictures. A page asks again for the rest.
 constexpr std::uint64_t most_part_bytes = 4 << 20;
 /// Reports and pictures of a case come from its author's file: nothing in them may run or load.
+constexpr std::size_t most_audited = 1000;  // of a request, bytes: texts of scenes are long
 constexpr const char* file_policy = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 constexpr std::string_view not_built =
     "<!doctype html><meta charset=utf-8><title>Insula</title><p>The viewer's page is not built. "
@@ -228,7 +229,7 @@ void HttpSession::answer_studio(const Request& request, const std::vector<std::s
   const std::string_view query = target.substr(std::min(target.find('?'), target.size() - 1) + 1);
   const bool changes = request.method() == http::verb::post || request.method() == http::verb::put;
   if (changes && !same_site(request)) return refuse(http::status::forbidden, "foreign origin");
-  if (parts[2] == "play" && visitor_.access != Access::here)
+  if ((parts[2] == "play" || parts[2] == "scene_look") && visitor_.access != Access::here)
     return refuse(http::status::forbidden, "exercises are played at the machine of the case builder");
   ApiAnswer answer;
   if (is_upload(request)) answer = site_.studio.upload(query, request.body());
@@ -237,7 +238,8 @@ void HttpSession::answer_studio(const Request& request, const std::vector<std::s
   else answer = site_.studio.get(parts[2], query);
   if (changes)
     site_.audit.write({visitor_.address, std::string(name_of(visitor_.access)), 0,
-                       "studio " + parts[2] + " " + (is_upload(request) ? std::string(query) : request.body()),
+                       "studio " + parts[2] + " " +
+                           (is_upload(request) ? std::string(query) : request.body().substr(0, most_audited)),
                        answer.status < 300, answer.status < 300 ? "" : answer.json, visitor_.who});
   send_text(request, http::status(answer.status), "application/json", answer.json);
 }

@@ -50,7 +50,10 @@ std::vector<std::string> exercises_in(const fs::path& folder) {
 }  // namespace
 
 Studio::Studio(const StudioPlaces& places)
-    : places_(places), projects_(places.data / "studio"), player_(places.programs / "insula", places.data) {}
+    : places_(places),
+      projects_(places.data / "studio"),
+      player_(places.programs / "insula", places.data),
+      scenes_(places.data, places.programs / "insula", player_) {}
 
 const StudioJob* Studio::job(const std::string& name, Kind kind) const {
   const auto it = jobs_.find(name);
@@ -200,6 +203,7 @@ void Studio::ended(const std::string& name, const StudioJob& job) {
 
 void Studio::look() {
   player_.look();
+  scenes_.look();
   for (auto it = jobs_.begin(); it != jobs_.end();) {
     if (!it->second->look()) {
       ++it;
@@ -233,6 +237,10 @@ ApiAnswer Studio::act(std::string_view path, StudioProject& p, const Json& body)
   if (path == "choose" || path == "undo" || path == "redo") return change(p, path, body);
   if (path == "build") return build(p);
   if (path == "play") return play(p, text_of(body, "exercise"));
+  if (path == "edit") {
+    const fs::path folder = case_folder(p);
+    return folder.empty() ? refusal(409, "the case must be built first") : scenes_.open(folder, p.name);
+  }
   if (path == "cancel") {
     if (const auto it = jobs_.find(p.name); it != jobs_.end()) it->second->cancel();
     return shown(p);
@@ -246,6 +254,7 @@ ApiAnswer Studio::act(std::string_view path, StudioProject& p, const Json& body)
 }
 
 ApiAnswer Studio::get(std::string_view path, std::string_view query) {
+  if (StudioScenes::answers(path)) return scenes_.get(path, query);
   if (path == "projects") {
     Json list = Json::array();
     for (const std::string& name : projects_.names())
@@ -270,6 +279,7 @@ ApiAnswer Studio::get(std::string_view path, std::string_view query) {
 ApiAnswer Studio::post(std::string_view path, const std::string& text) {
   const Json body = Json::parse(text, nullptr, false);
   if (!body.is_object()) return refusal(400, "this is no JSON object");
+  if (StudioScenes::answers(path)) return scenes_.post(path, body);
   std::optional<StudioProject> p = projects_.read(text_of(body, "name"));
   if (!p) return refusal(404, "there is no such project");
   try {

@@ -14,6 +14,7 @@
 #include "viewer/gateway/studio_job.h"
 #include "viewer/gateway/studio_player.h"
 #include "viewer/gateway/studio_projects.h"
+#include "viewer/gateway/studio_scenes.h"
 
 namespace insula::gateway {
 
@@ -36,7 +37,8 @@ class Studio {
   ///                    build: {state, error, seconds, stage, percent, step}, built: {current, report, exercises},
   ///                    play: {state, url, error}}
   ApiAnswer get(std::string_view path, std::string_view query);
-  ///   choose {name, choices}; undo, redo, build, cancel, remove {name}; play {name, exercise}: the project, as above
+  ///   choose {name, choices}; undo, redo, build, cancel, remove {name}; play {name, exercise}: the project, as above;
+  ///   edit {name}: a copy of the built scenes. What begins with "scene" is answered by StudioScenes.
   ApiAnswer post(std::string_view path, const std::string& body);
   /// file=: name of the author's file. The new project.
   ApiAnswer upload(std::string_view query, const std::string& bytes);
@@ -64,6 +66,7 @@ class Studio {
   std::map<std::string, std::unique_ptr<StudioJob>> jobs_;          ///< by project: one each
   std::map<std::string, std::string> wanted_exercise_, add_error_;  ///< by project
   StudioPlayer player_;
+  StudioScenes scenes_;
 };
 
 }  // namespace insula::gateway

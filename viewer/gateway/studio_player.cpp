@@ -13,8 +13,18 @@ constexpr auto session_end = std::chrono::seconds(8);  // insula play ends its o
 
 StudioPlayer::StudioPlayer(fs::path program, fs::path data) : program_(std::move(program)), data_(std::move(data)) {}
 
-void StudioPlayer::play(const std::string& project, const fs::path& scene) {
-  project_ = project, next_ = scene;
+void StudioPlayer::play(const std::string& project, const fs::path& scene) { change(project, scene, false); }
+
+void StudioPlayer::look_at(const std::string& project, const fs::path& scene) { change(project, scene, true); }
+
+void StudioPlayer::end(const std::string& project) {
+  if (project != project_) return;
+  project_.clear(), next_.clear();
+  child_.send(SIGTERM);
+}
+
+void StudioPlayer::change(const std::string& project, const fs::path& scene, bool view) {
+  project_ = project, next_ = scene, view_ = view;
   url_.clear(), error_.clear(), last_line_.clear();
   kill_at_ = std::chrono::steady_clock::now() + session_end;
   child_.send(SIGTERM);
@@ -22,8 +32,10 @@ void StudioPlayer::play(const std::string& project, const fs::path& scene) {
 }
 
 void StudioPlayer::start() {
-  error_ = child_.start(
-      {program_.string(), "play", next_.string(), "--no-browser", "--port", "8090", "--data", data_.string()});
+  std::vector<std::string> command{
+      program_.string(), view_ ? "view" : "play", next_.string(), "--no-browser", "--port", "8090"};
+  if (!view_) command.insert(command.end(), {"--data", data_.string()});
+  error_ = child_.start(command);
   next_.clear();
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The session in which an author plays an exercise of a case that he has built: at most one.
+// The session in which an author plays an exercise of a case that he has built, or looks at a scene that he edits: at
+// most one.
 #pragma once
 #include <chrono>
 #include <filesystem>
@@ -17,11 +18,16 @@ class StudioPlayer {
 
   /// Plays the scene. A session that runs is ended first.
   void play(const std::string& project, const std::filesystem::path& scene);
+  /// Shows the scene as `insula view` does. A session that runs is ended first.
+  void look_at(const std::string& project, const std::filesystem::path& scene);
+  /// Ends the session if it is of that project.
+  void end(const std::string& project);
   void look();
   /// {state: "starting" | "running" | "ended", url, error}; null if nothing of the project was played.
   nlohmann::json state(const std::string& project) const;
 
  private:
+  void change(const std::string& project, const std::filesystem::path& scene, bool view);
   void start();
   void hear(std::string_view line);
 
@@ -29,6 +35,7 @@ class StudioPlayer {
   ChildProcess child_;
   std::string project_, url_, error_, last_line_;
   std::filesystem::path next_;  ///< scene that waits for the end of the session before; empty: none
+  bool view_ = false;           ///< it is looked at, not played
   std::chrono::steady_clock::time_point kill_at_;
 };
 

@@ -203,6 +203,16 @@ TEST_F(StudioTest, ACaseIsBuilt) {
   EXPECT_EQ(project(name)["built"]["current"], false);
 }
 
+TEST_F(StudioTest, OnlyABuiltCaseHasScenesToBeEdited) {
+  const std::string name = ready();
+  EXPECT_EQ(ask("edit", name).status, 409);
+  ask("build", name);
+  wait(name, "build");
+  const json copy = json::parse(ask("edit", name).json);
+  EXPECT_EQ(copy["name"], name);
+  EXPECT_EQ(ask("scene_write", name, {{"file", "3_clipping.xml"}, {"text", ""}}).status, 404) << "it is no copy yet";
+}
+
 TEST_F(StudioTest, OnlyOneCaseIsBuiltAtATime) {
   const std::string one = ready("one.off"), two = ready("two.off");
   behave("hang");

@@ -2,4 +2,8 @@
 // Unit tests run in node; the browser test is test/e2e.mjs.
 import { defineConfig } from 'vitest/config';
 
-export default defineConfig({ test: { include: ['test/*.test.ts'], environment: 'node' } });
+export default defineConfig({
+  test: { include: ['test/*.test.ts'], environment: 'node' },
+  // Tests read the project's scenes.
+  server: { fs: { allow: ['../..'] } },
+});

@@ -2,6 +2,7 @@
 // The renderer with its scene, microscope and lens, and how much effort a quality level puts into them.
 import * as THREE from 'three';
 import { Microscope } from './camera';
+import { answerTheFrame } from './framed';
 import { Lens } from './lens';
 import { makeEnvironment, plainRoom } from './materials/environment';
 import type { Level } from './quality';
@@ -37,6 +38,7 @@ export class Stage {
     this.scope.addTo(this.scene);
     this.scene.add(this.plain);
     this.lens = new Lens(this.renderer);
+    answerTheFrame(this);
   }
 
   /** Of the last picture, shadows included. */

@@ -15,6 +15,8 @@ export const status = {
   error: '',
   /** What is wrong with the engine's data, one line each. */
   problems: [] as string[],
+  /** Where the point that is moved with the mouse is on the page, px; null: there is none. */
+  placing: null as [number, number] | null,
   build_ms: 0,
   taken: [false, false],
   active: 1,

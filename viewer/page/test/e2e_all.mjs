@@ -26,6 +26,7 @@ const checks = [
   'keyboard',
   'certificate',
   'studio',
+  'scene_editor',
   'firefox',
   'sound_firefox',
 ];

@@ -5,6 +5,7 @@ import { fixed } from '../languages/numbers';
 import { text } from '../languages/text';
 import type { Built, Project, StudioApi } from './api';
 import type { Asks } from './editor';
+import { editButton } from './scene_editor/edit_button';
 import { forThePage } from './wording';
 
 const waitMs = 300;
@@ -34,6 +35,11 @@ export class ResultPanel {
   private readonly play = el('div', { class: 'buttons' });
   private readonly report = el('a', { target: '_blank', rel: 'noopener' }, text('The full report'));
   private readonly say = el('p', { class: 'say', role: 'status' });
+  private name = '';
+  private readonly edit = editButton(
+    () => this.name,
+    (words) => setText(this.say, words),
+  );
   private shown = '';
 
   constructor(
@@ -52,6 +58,7 @@ export class ResultPanel {
       el('h4', {}, text('Play')),
       el('p', { class: 'hint' }, text('The case is added to this installation, where the start page shows it.')),
       this.play,
+      el('div', { class: 'buttons' }, this.edit),
       this.say,
     );
   }
@@ -65,6 +72,7 @@ export class ResultPanel {
     const now = JSON.stringify([p.name, { ...built, current: true }]);
     if (now === this.shown) return;
     this.shown = now;
+    this.name = p.name;
     this.report.href = this.api.file(p.name, 'report', built.number);
     const picture = (kind: string, alt: string) => el('img', { src: this.api.file(p.name, kind, built.number), alt });
     this.pictures.replaceChildren(
