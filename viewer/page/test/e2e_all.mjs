@@ -26,6 +26,7 @@ const checks = [
   'keyboard',
   'certificate',
   'studio',
+  'scan',
   'firefox',
   'sound_firefox',
 ];
