@@ -163,7 +163,7 @@ list(FILTER gateway_src EXCLUDE REGEX "/gateway/main\\.cpp$")
 if(gateway_src)
   add_library(insula_gateway STATIC ${gateway_src})
   target_link_libraries(insula_gateway PUBLIC insula_bus insula_progress Boost::boost spdlog::spdlog
-                        OpenSSL::SSL OpenSSL::Crypto PkgConfig::AVAHI)
+                        OpenSSL::SSL OpenSSL::Crypto PkgConfig::AVAHI PRIVATE ZLIB::ZLIB)
   target_compile_definitions(insula_gateway PRIVATE INSULA_PAGE_DIR="${PROJECT_SOURCE_DIR}/viewer/page/dist")
   add_executable(gateway viewer/gateway/main.cpp)
   target_link_libraries(gateway PRIVATE insula_gateway CLI11::CLI11)

@@ -2,13 +2,11 @@
 #include "engine/sharing/case_archive.h"
 
 #include <fmt/format.h>
-#include <zip.h>
 
 #include <algorithm>
 #include <array>
 #include <fstream>
 #include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -16,6 +14,7 @@
 #include "core/model/formats/file_bytes.h"
 #include "engine/live/scene_files.h"
 #include "engine/session/session_files.h"
+#include "engine/sharing/zip_reader.h"
 
 namespace insula {
 namespace fs = std::filesystem;
@@ -63,23 +62,6 @@ std::map<std::string, fs::path> gathered(const std::vector<fs::path>& scenes, co
   return out;
 }
 
-struct Closed {
-  void operator()(zip_t* z) const { zip_discard(z); }
-  void operator()(zip_file_t* f) const { zip_fclose(f); }
-};
-using Archive = std::unique_ptr<zip_t, Closed>;
-
-Archive opened(const fs::path& file, int flags) {
-  int code = 0;
-  Archive z(zip_open(file.c_str(), flags, &code));
-  if (z) return z;
-  zip_error_t error;
-  zip_error_init_with_code(&error, code);
-  const std::string text = zip_error_strerror(&error);
-  zip_error_fini(&error);
-  throw InputError(file.string() + ": is no case (" + text + ")");
-}
-
 void add(zip_t* z, const std::string& name, const std::string& bytes, const fs::path& file) {
   zip_source_t* source = zip_source_buffer(z, bytes.data(), bytes.size(), 0);
   const zip_int64_t at = source ? zip_file_add(z, name.c_str(), source, ZIP_FL_ENC_UTF_8) : -1;
@@ -88,48 +70,28 @@ void add(zip_t* z, const std::string& name, const std::string& bytes, const fs::
     throw InputError(file.string() + ": cannot be written: " + zip_strerror(z));
 }
 
-/// Reads an archive that nobody has checked.
+/// An archive whose names are safe and of a case.
 class Reader {
  public:
-  explicit Reader(const fs::path& file) : file_(file), zip_(opened(file, ZIP_RDONLY)) {
-    const zip_int64_t count = zip_get_num_entries(zip_.get(), 0);
-    if (count < 1 || std::uint64_t(count) > max_case_files + 1)
-      refuse(fmt::format("has {} files; a case has 1 to {}", count, max_case_files));
-    for (zip_int64_t i = 0; i < count; ++i) {
-      const char* name = zip_get_name(zip_.get(), zip_uint64_t(i), ZIP_FL_ENC_GUESS);
-      const std::string path = name ? name : "";
+  explicit Reader(const fs::path& file) : zip_(file, "case", max_case_files + 1) {
+    for (std::uint64_t i = 0; i < zip_.count(); ++i) {
+      const std::string path = zip_.name(i);
       if (!is_safe_path(path)) refuse("has the file \"" + path + "\", which would lie outside of its folder");
       if (!is_of_a_case(path)) refuse("has the file \"" + path + "\", which is of a kind that no case has");
-      if (!at_.emplace(path, zip_uint64_t(i)).second) refuse("has the file \"" + path + "\" twice");
+      if (!at_.emplace(path, i).second) refuse("has the file \"" + path + "\" twice");
     }
   }
-  const std::map<std::string, zip_uint64_t>& files() const { return at_; }
+  const std::map<std::string, std::uint64_t>& files() const { return at_; }
   std::string read(const std::string& path, std::uint64_t most) const {
     const auto at = at_.find(path);
     if (at == at_.end()) refuse("has no file \"" + path + "\"");
-    zip_stat_t facts;
-    if (zip_stat_index(zip_.get(), at->second, 0, &facts) != 0 || !(facts.valid & ZIP_STAT_SIZE) || facts.size > most)
-      refuse(fmt::format("has the file \"{}\" of more than {} bytes", path, most));
-    const std::unique_ptr<zip_file_t, Closed> in(zip_fopen_index(zip_.get(), at->second, 0));
-    if (!in) refuse("has the file \"" + path + "\", which cannot be read: " + zip_strerror(zip_.get()));
-    std::string bytes(facts.size + 1, '\0');
-    std::uint64_t n = 0;
-    while (n < bytes.size()) {
-      const zip_int64_t got = zip_fread(in.get(), bytes.data() + n, bytes.size() - n);
-      if (got < 0) refuse("is damaged at the file \"" + path + "\"");
-      if (got == 0) break;
-      n += std::uint64_t(got);
-    }
-    if (n != facts.size) refuse("is damaged at the file \"" + path + "\"");
-    bytes.resize(n);
-    return bytes;
+    return zip_.read(at->second, most);
   }
-  [[noreturn]] void refuse(const std::string& why) const { throw InputError(file_.string() + ": " + why); }
+  [[noreturn]] void refuse(const std::string& why) const { zip_.refuse(why); }
 
  private:
-  fs::path file_;
-  Archive zip_;
-  std::map<std::string, zip_uint64_t> at_;
+  ZipReader zip_;
+  std::map<std::string, std::uint64_t> at_;
 };
 
 struct Manifest {
@@ -201,7 +163,7 @@ PackedCase pack_case(const std::string& name, const std::vector<fs::path>& scene
       {"format", format}, {"name", name}, {"scenes", out.scenes}, {"files", hashes}};
   const std::string list = manifest.dump(1);
   const fs::path part = archive.string() + ".part";
-  Archive z = opened(part, ZIP_CREATE | ZIP_TRUNCATE);
+  ZipArchive z = opened_zip(part, ZIP_CREATE | ZIP_TRUNCATE, "case");
   add(z.get(), case_manifest, list, archive);
   for (const auto& [path, text] : bytes) add(z.get(), path, text, archive);
   if (zip_close(z.get()) != 0) throw InputError(archive.string() + ": cannot be written: " + zip_strerror(z.get()));

@@ -32,9 +32,9 @@ struct Line {
 };
 
 // Options whose values have a unit. joined_values() joins the words of such a value.
-const std::vector<std::string> with_unit = {"--seed",  "--rebuild", "--cut",  "--neck", "--neck-points",
-                                            "--inlet", "--keep",    "--bleb", "--gap",  "--spin",
-                                            "--lift",  "--slide",   "--turn", "--unit", "--brain-unit"};
+const std::vector<std::string> with_unit = {
+    "--seed", "--around", "--rebuild", "--cut",  "--neck",  "--neck-points", "--inlet", "--keep",
+    "--bleb", "--gap",    "--spin",    "--lift", "--slide", "--turn",        "--unit",  "--brain-unit"};
 
 /// A length or an angle; `take` gets it in the unit option.bare.
 template <class Q>
@@ -110,6 +110,11 @@ void intake_options(CLI::App* app, Options& o) {
   app->add_option("--threshold", o.threshold, "volumes: grey value from which on it is vessel");
   app->add_option("--smooth", o.smoothing, "volumes: smoothing of the border, in voxels")->check(CLI::Range(0.0, 5.0));
   shape_to(app, "--seed", Shape::point, o.seed, "a point: the piece nearest to it is the vessel");
+  quantity<Length>(app, "--around", [&o](double mm) { o.around = mm; },
+                   {.bare = "mm",
+                    .min = "5 mm",
+                    .max = "200 mm",
+                    .doc = "volumes: take only what lies so near to the seed along each axis"});
   app->add_flag("--keep-largest", o.keep_largest, "of several pieces take the largest, however large the others are");
   quantity<Length>(
       app, "--rebuild", [&o](double mm) { o.rebuild = mm; },
@@ -199,8 +204,9 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
   CLI::App app{"Makes training cases from patients' vessels. For training only, never for the care of patients.",
                "insula case"};
   app.require_subcommand(1);
-  auto* fresh = app.add_subcommand(
-      "new", "a case from a surface (STL, OBJ, PLY, glTF, VTP) or a volume (NIfTI, MetaImage, a folder of DICOM)");
+  auto* fresh = app.add_subcommand("new",
+                                   "a case from a surface (STL, OBJ, PLY, glTF, VTP) or a volume (NIfTI, MetaImage, "
+                                   "NRRD, DICOM as a folder or zip)");
   fresh->add_option("name", line.name, "of the case: letters, digits, _ and -")->required();
   fresh->add_option("input", line.input, "file, or folder of a DICOM series")->required();
   fresh->add_option("--out", line.out, "folder that gets the case's folder (default: scenes/cases of the project)");
@@ -209,7 +215,7 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
   auto* look = app.add_subcommand(
       "inspect", "tell what a file holds and where the neck may be, as JSON, before a case is made of it");
   look->add_option("input", line.input, "file, or folder of a DICOM series")->required();
-  look->add_option("--out", line.out, "folder that gets inspect.json and surface.ply, in place of the print");
+  look->add_option("--out", line.out, "folder that gets what was found, in place of the print");
   intake_options(look, o);
   look->callback([&line] { line.inspect = true; });
   for (const char* stage : stages) {

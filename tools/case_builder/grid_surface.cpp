@@ -23,6 +23,7 @@ namespace {
 using mesh_tool::Field;
 using mesh_tool::Grid;
 using mesh_tool::Mask;
+using mesh_tool::operator-;
 constexpr double max_nodes = 6e7;
 
 constexpr double wanted_triangles = 20000, even_triangles = 9000;
@@ -77,39 +78,32 @@ TriMesh evened(const TriMesh& mesh) {
   return out.mesh;
 }
 
+/// The node of the set that is nearest to a point.
+std::size_t nearest_node(const Grid& grid, const Mask& mask, const Point& to) {
+  std::size_t best = 0, n = 0;
+  double least = 1e300;
+  for (int k = 0; k < grid.size[2]; ++k)
+    for (int j = 0; j < grid.size[1]; ++j)
+      for (int i = 0; i < grid.size[0]; ++i, ++n) {
+        if (!mask[n]) continue;
+        const double away = mesh_tool::norm(grid.point(i, j, k) - to);
+        if (away < least) least = away, best = n;
+      }
+  return best;
+}
+
 /// The connected set that is the vessel: the largest, or the one nearest to the seed.
 Mask vessel_part(const Grid& grid, const Mask& mask, const Options& o, std::vector<Note>& notes) {
-  Mask left = mask, best;
-  std::size_t whole = 0, parts = 0;
-  double least = 1e300;
-  for (const unsigned char c : mask) whole += c;
-  std::size_t rest = whole, kept = 0;
-  while (rest > 0 && parts < 200) {
-    const Mask part = mesh_tool::largest_component(grid, left);
-    std::size_t size = 0;
-    double near = 1e300;
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      if (!part[i]) continue;
-      ++size, left[i] = 0;
-      if (o.seed) {
-        const int n0 = grid.size[0], n1 = grid.size[1];
-        const auto p = grid.point(int(i % std::size_t(n0)), int(i / std::size_t(n0) % std::size_t(n1)),
-                                  int(i / (std::size_t(n0) * std::size_t(n1))));
-        near = std::min(near, std::hypot(p[0] - (*o.seed)[0], p[1] - (*o.seed)[1], p[2] - (*o.seed)[2]));
-      }
-    }
-    if (size == 0) break;
-    ++parts;
-    rest -= size;
-    if (best.empty() || (o.seed && near < least)) best = part, kept = size, least = near;
-    if (!o.seed) break;
-  }
+  const auto count = [](const Mask& m) { return std::size_t(std::count(m.begin(), m.end(), 1)); };
+  Mask part = o.seed ? mesh_tool::component(grid, mask, nearest_node(grid, mask, *o.seed))
+                     : mesh_tool::largest_component(grid, mask);
+  const std::size_t whole = count(mask), kept = count(part);
   if (kept < whole)
     notes.push_back({Note::Kind::repair,
                      fmt::format("The vessel's voxels are in several pieces; the {} one was kept, {:.1f} % of them.",
                                  o.seed ? "wanted" : "largest", 100.0 * double(kept) / double(whole)),
                      kept * 2 < whole ? "If this is another one than meant, name a point in it with --seed." : ""});
-  return best;
+  return part;
 }
 
 /// Where the vessel meets the faces of the volume: the middle of each patch there, drawn in by `inset`, and the way
@@ -203,7 +197,9 @@ class VesselVolume {
       grid.origin[std::size_t(a)] = from[a],
       nodes *= grid.size[std::size_t(a)] = int(std::ceil((to[a] - from[a]) / grid.spacing)) + 1;
     if (nodes > max_nodes)
-      fail(file_, "the vessel fills too large a box; cut out the region around the aneurysm first");
+      fail(file_,
+           "the vessel fills too large a box; name a point in it (--seed) and take what is near it "
+           "(--around \"30 mm\"), or cut out the region around the aneurysm first");
     if (coarse() > 1.05 * fine())
       notes.push_back({Note::Kind::repair,
                        fmt::format("Voxels of {:.3g} x {:.3g} x {:.3g} mm were brought to cubes of {:.3g} mm.",

@@ -12,10 +12,11 @@ struct Inspection {
                ///< found
 };
 
-/// Throws InputError if the file is no vessel.
+/// Throws InputError if the file is no vessel. One without openings is shown too, so that its ends can be cut.
 Inspection inspect(const fs::path& input, const Options& options, Progress& progress);
 
-/// Prints the facts as JSON, or writes inspect.json and surface.ply to a folder.
+/// Prints the facts as JSON, or writes inspect.json and surface.ply to a folder. Of a scan without a threshold or a
+/// label: those of scan_look.h, or scan.json, scan.raw and the scan without its other tags, scan.mha.
 void run_inspect(const fs::path& input, const fs::path& folder, const Options& options, std::FILE* out,
                  Progress& progress);
 

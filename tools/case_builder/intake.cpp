@@ -163,7 +163,7 @@ void mend_shape(artery::Surface& s, const std::string& what, const Options& o, s
 
 }  // namespace
 
-Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<Note> notes) {
+Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<Note> notes, Openings needed) {
   Intake out;
   out.facts["triangles_given"] = m.triangles.size();
   if (m.triangles.empty()) throw InputError(what + ": holds no triangles");
@@ -180,7 +180,7 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
               what, o, notes);
   make_cuts(s, o);
   out.facts["openings_found_by"] = add_flat_ends(s);
-  if (s.caps.size() < 2)
+  if (s.caps.size() < 2 && needed == Openings::two)
     throw InputError(
         fmt::format("{}: has {} opening{}; a vessel needs an inlet and an outlet. Ends must be open, or cut straight "
                     "and closed flat; where they are rounded, cut them with --cut \"X Y Z mm NX NY NZ\" "
@@ -188,9 +188,10 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
                     what, s.caps.size(), ending(int(s.caps.size()))));
   mend_shape(s, what, o, notes);
   const bool of_volume = o.label || o.threshold;
-  if (!o.any_size && !o.unit_mm && !of_volume) scale_by_calibre(s, notes);
+  const bool open = !s.caps.empty();
+  if (open && !o.any_size && !o.unit_mm && !of_volume) scale_by_calibre(s, notes);
   const Json openings = name_openings(s);
-  if (!o.any_size)
+  if (open && !o.any_size)
     if (const std::string why = check_calibre(2 * s.caps[0].radius, o.unit_mm.value_or(1)); !why.empty())
       throw InputError(what + ": " + why + "; --any-size takes it all the same");
   const artery::Quality q = artery::quality(s.mesh);
@@ -211,7 +212,7 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
   return out;
 }
 
-Intake take_in(const fs::path& input, const Options& given, Progress& progress) {
+Intake take_in(const fs::path& input, const Options& given, Progress& progress, Openings needed) {
   if (!fs::exists(input)) fail(input, "does not exist");
   const Options o = as_read(given);
   // Messages tell positions.
@@ -227,13 +228,14 @@ Intake take_in(const fs::path& input, const Options& given, Progress& progress) 
     with_ends.cuts.insert(with_ends.cuts.end(), o.cuts.begin(), o.cuts.end());
   } else {
     with_ends.cuts = o.cuts;
-    if (o.label || o.threshold) fail(input, "is a surface; --label and --threshold are for volumes");
+    if (o.label || o.threshold || o.around)
+      fail(input, "is a surface; --label, --threshold and --around are for volumes");
     m = read_surface_mm(input, o, notes);
   }
   progress.step("mending the surface");
   Intake out;
   try {
-    out = mended(std::move(m), what, with_ends, std::move(notes));
+    out = mended(std::move(m), what, with_ends, std::move(notes), needed);
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& e) {

@@ -15,11 +15,15 @@ struct Intake {
   Json facts;  ///< counts and sizes, for the report
 };
 
+/// A vessel has two openings at least. Before its ends are cut, it may have fewer.
+enum class Openings { two, any };
+
 /// Mends a surface (mm) or says why it cannot be mended. Throws InputError; `what` names the input in messages.
-Intake mended(TriMesh mesh, const std::string& what, const Options& options, std::vector<Note> notes);
+Intake mended(TriMesh mesh, const std::string& what, const Options& options, std::vector<Note> notes,
+              Openings needed = Openings::two);
 
 /// Reads a surface or a volume and mends it. Throws InputError.
-Intake take_in(const fs::path& input, const Options& options, Progress& progress);
+Intake take_in(const fs::path& input, const Options& options, Progress& progress, Openings needed = Openings::two);
 
 /// The stage: writes intake/surface.ply and intake/intake.json.
 void run_intake(const CaseFolder& folder, const fs::path& input, const Options& options, Progress& progress);

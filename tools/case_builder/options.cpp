@@ -29,6 +29,7 @@ Json to_json(const Options& o) {
   put(j, "threshold", o.threshold);
   put(j, "label", o.label);
   put(j, "seed", o.seed);
+  put(j, "around", o.around);
   j["keep_largest"] = o.keep_largest;
   put(j, "rebuild", o.rebuild);
   j["cuts"] = o.cuts;
@@ -71,6 +72,7 @@ Options options_from_json(const Json& j) {
     take(j, "threshold", o.threshold);
     take(j, "label", o.label);
     take(j, "seed", o.seed);
+    take(j, "around", o.around);
     take(j, "keep_largest", o.keep_largest);
     take(j, "rebuild", o.rebuild);
     take(j, "cuts", o.cuts);

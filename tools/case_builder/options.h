@@ -24,6 +24,7 @@ struct Options {
   std::optional<double> threshold;  ///< of a grey volume: vessel from here up
   std::optional<int> label;         ///< of a label volume
   std::optional<Point> seed;        ///< the piece nearest to this point is the vessel; by default the largest
+  std::optional<double> around;     ///< of a volume: what is farther from the seed along an axis is left out
   bool keep_largest = false;        ///< even when other pieces are large
   std::optional<double> rebuild;    ///< a surface is made anew from a grid of that spacing
   std::vector<Plane> cuts;  ///< what lies beyond is cut off and the opening closed; the normal points to what goes

@@ -155,7 +155,8 @@ inline std::string head_text(const Vec3& shift = Vec3::Zero()) {
 
 /// One slice of a DICOM series, 16 bits, explicit little endian.
 inline std::string dicom_text(std::array<int, 2> n, double spacing, int slice,
-                              const std::function<int(int, int)>& value, const std::string& series = "1.2.3.6") {
+                              const std::function<int(int, int)>& value, const std::string& series = "1.2.3.6",
+                              const std::string& person = "") {
   std::string s(128, '\0');
   s += "DICM";
   const auto put = [](std::string& to, auto v) { to.append(reinterpret_cast<const char*>(&v), sizeof v); };
@@ -184,6 +185,7 @@ inline std::string dicom_text(std::array<int, 2> n, double spacing, int slice,
   element(s, 2, 0, "UL", length);
   s += meta;
   element(s, 8, 0x16, "UI", ct), element(s, 8, 0x18, "UI", id), element(s, 8, 0x60, "CS", "CT");
+  if (!person.empty()) element(s, 0x10, 0x10, "PN", person), element(s, 0x10, 0x20, "LO", person);
   element(s, 0x18, 0x50, "DS", same);
   element(s, 0x20, 0xD, "UI", "1.2.3.5"), element(s, 0x20, 0xE, "UI", series),
       element(s, 0x20, 0x13, "IS", std::to_string(slice + 1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only file that includes ITK. Its readers are used one by one, without factories and image templates, which keeps
+// Reads volumes through ITK. Its readers are used one by one, without factories and image templates, which keeps
 // this quick to compile. It includes no Eigen, since ITK may bring another version of it.
 #include "tools/case_builder/volume_reader.h"
 
@@ -7,6 +7,7 @@
 #include <itkGDCMSeriesFileNames.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
+#include <itkNrrdImageIO.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -263,6 +264,7 @@ mesh_tool::NiftiVolume read_volume(const fs::path& path) {
       check_meta_length(path, double(io->GetImageSizeInBytes()));
       return read_file(path, *itk::MetaImageIO::New());
     }
+    if (ends_with(name, ".nrrd")) return read_file(path, *itk::NrrdImageIO::New());
     check_length(path);
     return read_file(path, *itk::NiftiImageIO::New());
   } catch (const InputError&) {

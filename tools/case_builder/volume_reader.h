@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scalar volumes from NIfTI, MetaImage and DICOM through ITK.
+// Scalar volumes from NIfTI, MetaImage, NRRD and DICOM through ITK.
 #pragma once
 #include <filesystem>
 

@@ -127,6 +127,24 @@ void smooth(const Grid& grid, Field& field, double sigma) {
   }
 }
 
+Mask component(const Grid& grid, const Mask& mask, std::size_t of) {
+  Mask out(mask.size(), 0);
+  std::vector<std::size_t> stack;
+  const auto push = [&](std::size_t at) {
+    if (mask[at] && !out[at]) {
+      out[at] = 1;
+      stack.push_back(at);
+    }
+  };
+  push(of);
+  while (!stack.empty()) {
+    const std::size_t at = stack.back();
+    stack.pop_back();
+    for_six_neighbours(grid, at, push);
+  }
+  return out;
+}
+
 Mask largest_component(const Grid& grid, const Mask& mask) {
   std::vector<std::uint32_t> label(mask.size(), 0);
   std::vector<std::size_t> stack;

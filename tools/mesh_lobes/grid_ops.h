@@ -17,6 +17,9 @@ Field signed_distance(const Grid& grid, const Mask& mask);
 // Separable Gaussian of standard deviation sigma (mm), truncated at three sigma; the border value is repeated.
 void smooth(const Grid& grid, Field& field, double sigma);
 
+// The 6-connected component of a node of the set; nothing if it is none.
+Mask component(const Grid& grid, const Mask& mask, std::size_t of);
+
 // Keeps the largest 6-connected component.
 Mask largest_component(const Grid& grid, const Mask& mask);
 

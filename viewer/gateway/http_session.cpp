@@ -12,6 +12,7 @@
 
 #include "core/base/text.h"
 #include "viewer/gateway/byte_range.h"
+#include "viewer/gateway/scan_kind.h"
 #include "viewer/gateway/static_files.h"
 #include "viewer/gateway/ws_client.h"
 
@@ -67,19 +68,39 @@ bool HttpSession::is_upload(const http::request_header<>& request) {
 void HttpSession::on_header(beast::error_code error) {
   if (error) return close();
   const Request head{parser_->get().base()};
-  if (parser_->content_length().value_or(0) > Sessions::most_notes_bytes && !is_upload(head)) return close();
-  if (is_upload(head)) {
-    if (refuse_foreign(head)) return;
-    visitor_ = visitor_of(head);
-    if (!site_.studio.offered() || visitor_.access < Access::instructor || !same_site(head))
-      return send_error(head, http::status::forbidden, "only for pages on this machine and instructors");
-    if (parser_->content_length().value_or(0) > Studio::most_upload_bytes)
-      return send_error(head, http::status::payload_too_large, "this file is too large: 220 MB are taken");
-    stream_.next_layer().expires_after(upload_timeout);
-  }
-  parser_->body_limit(is_upload(head) ? Studio::most_upload_bytes : Sessions::most_notes_bytes);
+  if (is_upload(head)) return read_upload(head);
+  if (parser_->content_length().value_or(0) > Sessions::most_notes_bytes) return close();
+  parser_->body_limit(Sessions::most_notes_bytes);
   http::async_read(stream_, in_, *parser_,
                    [self = shared_from_this()](beast::error_code e, std::size_t) { self->on_read(e); });
+}
+
+/// It goes to the disk as it comes.
+void HttpSession::read_upload(const Request& head) {
+  if (refuse_foreign(head)) return;
+  visitor_ = visitor_of(head);
+  if (!site_.studio.offered() || visitor_.access < Access::instructor || !same_site(head))
+    return send_error(head, http::status::forbidden, "only for pages on this machine and instructors");
+  if (parser_->content_length().value_or(0) > most_scan_bytes)
+    return send_error(head, http::status::payload_too_large, too_large_scan);
+  incoming_ = std::make_unique<IncomingFile>(site_.studio.incoming());
+  upload_.emplace(std::move(*parser_));
+  upload_->body_limit(most_scan_bytes);
+  beast::error_code error;
+  upload_->get().body().open(incoming_->path().c_str(), beast::file_mode::write, error);
+  if (error) return send_error(head, http::status::insufficient_storage, "the file cannot be kept: is the disk full?");
+  stream_.next_layer().expires_after(upload_timeout);
+  http::async_read(stream_, in_, *upload_,
+                   [self = shared_from_this()](beast::error_code e, std::size_t) { self->on_upload(e); });
+}
+
+void HttpSession::on_upload(beast::error_code error) {
+  const Request head{upload_->get().base()};
+  upload_.reset();
+  if (error) incoming_.reset();
+  if (error) return close();
+  answer(head);
+  incoming_.reset();
 }
 
 void HttpSession::on_read(beast::error_code error) {
@@ -232,7 +253,7 @@ void HttpSession::answer_studio(const Request& request, const std::vector<std::s
   if ((parts[2] == "play" || parts[2] == "scene_look") && visitor_.access != Access::here)
     return refuse(http::status::forbidden, "exercises are played at the machine of the case builder");
   ApiAnswer answer;
-  if (is_upload(request)) answer = site_.studio.upload(query, request.body());
+  if (is_upload(request) && incoming_) answer = site_.studio.upload(query, incoming_->path());
   else if (request.method() == http::verb::post) answer = site_.studio.post(parts[2], request.body());
   else if (const auto file = site_.studio.file(parts[2], query)) return send_file(request, *file, "no-store");
   else answer = site_.studio.get(parts[2], query);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "viewer/gateway/incoming_file.h"
 #include "viewer/gateway/page_stream.h"
 #include "viewer/gateway/site.h"
 
@@ -27,6 +28,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void read();
   void on_header(beast::error_code error);
   static bool is_upload(const http::request_header<>& request);
+  void read_upload(const Request& head);
+  void on_upload(beast::error_code error);
   void on_read(beast::error_code error);
   static bool same_site(const Request& request);
   bool refuse_foreign(const Request& request);
@@ -64,6 +67,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   Visitor visitor_;  ///< of the present request
   beast::flat_buffer in_;
   std::optional<http::request_parser<http::string_body>> parser_;
+  std::optional<http::request_parser<http::file_body>> upload_;
+  std::unique_ptr<IncomingFile> incoming_;
 };
 
 }  // namespace insula::gateway

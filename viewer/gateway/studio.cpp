@@ -2,12 +2,11 @@
 #include "viewer/gateway/studio.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include "core/base/input_error.h"
 #include "viewer/gateway/json_input.h"
 #include "viewer/gateway/studio_choices.h"
-#include "viewer/gateway/surface_kind.h"
+#include "viewer/gateway/studio_scan.h"
 #include "viewer/gateway/training_api.h"
 
 namespace insula::gateway {
@@ -53,7 +52,16 @@ Studio::Studio(const StudioPlaces& places)
     : places_(places),
       projects_(places.data / "studio"),
       player_(places.programs / "insula", places.data),
-      scenes_(places.data, places.programs / "insula", player_) {}
+      scenes_(places.data, places.programs / "insula", player_) {
+  std::error_code ignored;
+  if (offered()) fs::remove_all(projects_.incoming_folder(), ignored);  // what an earlier run left
+}
+
+fs::path Studio::incoming() {
+  std::error_code ignored;
+  fs::create_directories(projects_.incoming_folder(), ignored);
+  return projects_.incoming_folder() / std::to_string(++came_);
+}
 
 const StudioJob* Studio::job(const std::string& name, Kind kind) const {
   const auto it = jobs_.find(name);
@@ -95,6 +103,11 @@ ApiAnswer Studio::shown(const StudioProject& p) const {
   Json inspected = work("inspect", job(p.name, Kind::inspect));
   if (text_of(inspected, "state") == "done")
     inspected["facts"] = read_json(projects_.folder(p.name) / found_in / "inspect.json");
+  Json scan;
+  if (is_scan(p)) {
+    scan = work("scan", job(p.name, Kind::scan));
+    if (text_of(scan, "state") == "done") scan["facts"] = read_json(scan_file(projects_.folder(p.name), ".json"));
+  }
   Json play = player_.state(p.name);
   if (job(p.name, Kind::add)) play = {{"state", "adding"}, {"url", ""}, {"error", ""}};
   else if (const auto it = add_error_.find(p.name); it != add_error_.end())
@@ -105,6 +118,7 @@ ApiAnswer Studio::shown(const StudioProject& p) const {
                           {"undo", p.at > 0},
                           {"redo", p.at + 1 < p.history.size()},
                           {"command", command_line(p)},
+                          {"scan", scan},
                           {"inspect", inspected},
                           {"build", work("build", job(p.name, Kind::build))},
                           {"built", built_json(p)},
@@ -112,6 +126,15 @@ ApiAnswer Studio::shown(const StudioProject& p) const {
 }
 
 void Studio::inspect(StudioProject& p) {
+  if (is_scan(p) && !scan_is_read(p)) return read_scan(p);
+  if (!is_scan(p) || has_level(p)) return read_surface(p);
+  // No vessel is chosen in it.
+  jobs_.erase(p.name);
+  p.work["inspect"]["state"] = "waiting";
+  projects_.write(p);
+}
+
+void Studio::read_surface(StudioProject& p) {
   const fs::path folder = projects_.folder(p.name);
   std::error_code ignored;
   fs::remove_all(folder / "inspect.part", ignored);
@@ -187,6 +210,7 @@ void Studio::ended(const std::string& name, const StudioJob& job) {
   if (job.kind() == Kind::add) return added(name, job);
   std::optional<StudioProject> p = projects_.read(name);
   if (!p) return;
+  if (job.kind() == Kind::scan) return scan_ended(*p, job);
   Json& work = p->work[job.kind() == Kind::build ? "build" : "inspect"];
   std::error_code error;
   if (job.succeeded() && job.kind() == Kind::inspect) {
@@ -236,6 +260,11 @@ ApiAnswer Studio::change(StudioProject& p, std::string_view path, const Json& bo
 ApiAnswer Studio::act(std::string_view path, StudioProject& p, const Json& body) {
   if (path == "choose" || path == "undo" || path == "redo") return change(p, path, body);
   if (path == "build") return build(p);
+  if (path == "again") {
+    if (jobs_.count(p.name)) return refusal(409, "the case is at work; wait, or cancel it");
+    inspect(p);
+    return shown(p);
+  }
   if (path == "play") return play(p, text_of(body, "exercise"));
   if (path == "edit") {
     const fs::path folder = case_folder(p);
@@ -260,14 +289,14 @@ ApiAnswer Studio::get(std::string_view path, std::string_view query) {
     for (const std::string& name : projects_.names())
       if (const auto p = projects_.read(name))
         list.push_back({{"name", name}, {"file", p->file}, {"built", !case_folder(*p).empty()}});
-    return answer_with(Json{{"projects", list}, {"building", building()}, {"most_bytes", most_upload_bytes}});
+    return answer_with(Json{{"projects", list}, {"building", building()}, {"most_bytes", most_scan_bytes}});
   }
   if (path != "project") return refusal(404, "not found");
   std::optional<StudioProject> p = projects_.read(query_value(query, "name"));
   if (!p) return refusal(404, "there is no such project");
   try {
-    const std::string state = state_of(*p, "inspect");
-    if (!jobs_.count(p->name) && state != "done" && state != "failed" && state != "cancelled") inspect(*p);
+    const std::string state = state_of(*p, is_scan(*p) && !scan_is_read(*p) ? "scan" : "inspect");
+    if (!jobs_.count(p->name) && (state.empty() || state == "running")) inspect(*p);
     return shown(*p);
   } catch (const InputError& e) {
     return refusal(500, e.what());
@@ -291,12 +320,12 @@ ApiAnswer Studio::post(std::string_view path, const std::string& text) {
   }
 }
 
-ApiAnswer Studio::upload(std::string_view query, const std::string& bytes) {
-  if (bytes.size() > most_upload_bytes) return refusal(413, "this file is too large: 220 MB are taken");
-  const SurfaceKind kind = surface_kind(bytes);
-  if (kind.extension.empty()) return refusal(415, kind.refused);
+ApiAnswer Studio::upload(std::string_view query, const fs::path& content) {
   try {
-    StudioProject p = projects_.create(query_value(query, "file"), kind.extension, bytes);
+    const UploadKind kind = kind_of_upload(content);
+    if (kind.extension.empty()) return refusal(kind.status, kind.refused);
+    StudioProject p = projects_.create(query_value(query, "file"), kind.input(), content);
+    if (kind.scan) p.work["scan"] = Json::object();
     inspect(p);
     return shown(p);
   } catch (const InputError& e) {
@@ -309,6 +338,7 @@ std::optional<fs::path> Studio::file(std::string_view path, std::string_view que
   if (!p) return std::nullopt;
   fs::path out;
   if (path == "surface") out = projects_.folder(p->name) / found_in / "surface.ply";
+  else if (path == "scan") out = scan_file(projects_.folder(p->name), ".raw");
   else if (const fs::path folder = case_folder(*p); folder.empty()) return std::nullopt;
   else if (path == "report") out = folder / "report.html";
   else if (path == "side" || path == "front" || path == "fissure")

@@ -29,20 +29,24 @@ class Studio {
   static constexpr std::uint64_t most_upload_bytes = 220'000'000;
 
   explicit Studio(const StudioPlaces& places);
+  /// Where the next file that comes is to be written.
+  std::filesystem::path incoming();
   bool offered() const { return !places_.data.empty(); }
 
   /// path: what follows /api/studio/.
   ///   projects        {projects: [{name, file, state}], building, most_bytes}
-  ///   project?name=   {name, file, choices, undo, redo, command, inspect: {state, error, number, facts},
+  ///   project?name=   {name, file, choices, undo, redo, command, scan: null or {state, error, facts},
+  ///                    inspect: {state, error, number, facts},
   ///                    build: {state, error, seconds, stage, percent, step}, built: {current, report, exercises},
   ///                    play: {state, url, error}}
   ApiAnswer get(std::string_view path, std::string_view query);
-  ///   choose {name, choices}; undo, redo, build, cancel, remove {name}; play {name, exercise}: the project, as above;
-  ///   edit {name}: a copy of the built scenes. What begins with "scene" is answered by StudioScenes.
+  ///   choose {name, choices}; undo, redo, build, cancel, remove, again {name}; play {name, exercise}: the project, as
+  ///   above. again: the file is read once more. edit {name}: a copy of the built scenes. What begins with "scene" is
+  ///   answered by StudioScenes.
   ApiAnswer post(std::string_view path, const std::string& body);
-  /// file=: name of the author's file. The new project.
-  ApiAnswer upload(std::string_view query, const std::string& bytes);
-  /// surface, side, front, fissure and report of the project name=.
+  /// file=: name of the author's file. The new project. The content is moved to it.
+  ApiAnswer upload(std::string_view query, const std::filesystem::path& content);
+  /// surface, scan, side, front, fissure and report of the project name=.
   std::optional<std::filesystem::path> file(std::string_view path, std::string_view query) const;
   /// Looks after the programs at work; about ten times a second.
   void look();
@@ -57,6 +61,9 @@ class Studio {
   const StudioJob* job(const std::string& name, StudioJob::Kind kind) const;
   std::string building() const;
   void inspect(StudioProject& project);
+  void read_surface(StudioProject& project);
+  void read_scan(StudioProject& project);
+  void scan_ended(StudioProject& project, const StudioJob& job);
   void ended(const std::string& name, const StudioJob& job);
   void added(const std::string& name, const StudioJob& job);
   std::filesystem::path case_folder(const StudioProject& project) const;
@@ -67,6 +74,7 @@ class Studio {
   std::map<std::string, std::string> wanted_exercise_, add_error_;  ///< by project
   StudioPlayer player_;
   StudioScenes scenes_;
+  std::uint64_t came_ = 0;  ///< files so far
 };
 
 }  // namespace insula::gateway

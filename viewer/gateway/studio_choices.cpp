@@ -64,6 +64,14 @@ const std::map<std::string, Rule>& rules() {
       {"mirror", {is_switch, "the side is left or right"}},
       {"any_size", {is_switch, "sizes are checked, or not"}},
       {"cuts", {are_cuts, "a cut has a point and a direction; there are 12 at most"}},
+      {"threshold",
+       {[](const Json& v) { return v.is_null() || is_number(v, -far_away, far_away); }, "a threshold is a number"}},
+      {"label",
+       {[whole](const Json& v) { return v.is_null() || whole(1, 65535)(v); }, "a label is a whole number above 0"}},
+      {"seed", {[](const Json& v) { return v.is_null() || are_numbers(v, 3); }, "the seed is a point"}},
+      {"around_mm",
+       {[](const Json& v) { return v.is_null() || is_number(v, 5, 200); },
+        "the part around the seed is from 5 to 200 mm"}},
       {"neck", {is_neck, "a neck has a point and a direction, or two points"}},
       {"inlet", {[](const Json& v) { return v.is_null() || are_numbers(v, 3); }, "the inlet is a point"}},
       {"rebuild_mm",
@@ -95,10 +103,11 @@ std::string plane(const Json& v) {
 }  // namespace
 
 Json first_choices() {
-  return {{"unit", ""},       {"mirror", false},     {"any_size", false},     {"cuts", Json::array()},
-          {"neck", nullptr},  {"inlet", nullptr},    {"rebuild_mm", nullptr}, {"keep_mm", 13},
-          {"vertices", 1650}, {"spin_deg", nullptr}, {"rehearse", true},      {"plays", 16},
-          {"site", ""},       {"difficulty", 0}};
+  return {{"threshold", nullptr}, {"label", nullptr},    {"seed", nullptr},       {"around_mm", nullptr},
+          {"unit", ""},           {"mirror", false},     {"any_size", false},     {"cuts", Json::array()},
+          {"neck", nullptr},      {"inlet", nullptr},    {"rebuild_mm", nullptr}, {"keep_mm", 13},
+          {"vertices", 1650},     {"spin_deg", nullptr}, {"rehearse", true},      {"plays", 16},
+          {"site", ""},           {"difficulty", 0}};
 }
 
 Json changed_choices(Json choices, const Json& changes) {
@@ -109,12 +118,20 @@ Json changed_choices(Json choices, const Json& changes) {
     if (!rule->second.allows(value)) throw InputError(rule->second.refused);
     choices[name] = value;
   }
+  if (!choices["threshold"].is_null() && !choices["label"].is_null())
+    throw InputError("a vessel in a scan has a threshold or a label");
   return choices;
 }
 
 std::vector<std::string> intake_words(const Json& c) {
   std::vector<std::string> out;
   if (c["unit"] != "") out.insert(out.end(), {"--unit", c["unit"].get<std::string>()});
+  if (!c["threshold"].is_null())
+    out.insert(out.end(), {"--threshold", fmt::format("{:.6g}", c["threshold"].get<double>())});
+  if (!c["label"].is_null()) out.insert(out.end(), {"--label", std::to_string(c["label"].get<int>())});
+  if (!c["seed"].is_null()) out.insert(out.end(), {"--seed", place(c["seed"])});
+  if (!c["seed"].is_null() && !c["around_mm"].is_null())
+    out.insert(out.end(), {"--around", fmt::format("{:g} mm", c["around_mm"].get<double>())});
   if (c["mirror"] == true) out.emplace_back("--mirror");
   if (c["any_size"] == true) out.emplace_back("--any-size");
   if (!c["rebuild_mm"].is_null())

@@ -12,7 +12,7 @@ namespace insula::gateway {
 class StudioJob {
  public:
   using Clock = std::chrono::steady_clock;
-  enum class Kind { inspect, build, add };
+  enum class Kind { scan, inspect, build, add };
   /// limit: after it, the program is ended.
   StudioJob(Kind kind, const std::vector<std::string>& command, std::chrono::seconds limit);
 
@@ -22,6 +22,8 @@ class StudioJob {
   void cancel();
 
   bool cancelled() const { return cancelled_; }
+  /// The program itself said why not.
+  bool refused() const { return ended_ && tells_error_ && !cancelled_; }
   bool succeeded() const { return ended_ && error_.empty(); }
   /// For the author; empty while it runs, and after a success.
   const std::string& error() const { return error_; }

@@ -67,8 +67,7 @@ void StudioProjects::write(const StudioProject& p) const {
     throw InputError("the project cannot be written: is the disk full?");
 }
 
-StudioProject StudioProjects::create(const std::string& file, const std::string& extension,
-                                     const std::string& bytes) const {
+StudioProject StudioProjects::create(const std::string& file, const std::string& input, const fs::path& content) const {
   const std::string wanted = name_for(file);
   std::error_code error;
   fs::create_directories(root_, error);
@@ -77,9 +76,11 @@ StudioProject StudioProjects::create(const std::string& file, const std::string&
     if (error || k > 999) throw InputError("no folder can be made for the project");
     name = wanted + "_" + std::to_string(k);
   }
-  StudioProject out{name, shown(file), "input" + extension, {first_choices()}, 0, Json::object()};
+  StudioProject out{name, shown(file), input, {first_choices()}, 0, Json::object()};
   try {
-    if (!replace_file(folder(name) / out.input, bytes)) throw InputError("the file cannot be kept: is the disk full?");
+    fs::create_directories((folder(name) / out.input).parent_path(), error);
+    fs::rename(content, folder(name) / out.input, error);
+    if (error) throw InputError("the file cannot be kept: is the disk full?");
     write(out);
   } catch (const InputError&) {
     fs::remove_all(folder(name), error);

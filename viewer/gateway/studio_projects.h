@@ -13,7 +13,7 @@ namespace insula::gateway {
 
 struct StudioProject {
   std::string name, file;               ///< file: its name at the author
-  std::string input;                    ///< its name in the folder
+  std::string input;                    ///< its path in the folder
   std::vector<nlohmann::json> history;  ///< choices; one at least
   std::size_t at = 0;                   ///< the present ones
   /// {inspect: {state, error}, build: {state, error, folder, choices, began_ms}, builds}; states: running, done,
@@ -35,8 +35,11 @@ class StudioProjects {
   std::optional<StudioProject> read(const std::string& name) const;
   /// Throws InputError.
   void write(const StudioProject& project) const;
-  /// A new project with the bytes of its file. If the name is taken, it gets a number. Throws InputError.
-  StudioProject create(const std::string& file, const std::string& extension, const std::string& bytes) const;
+  /// Where a file is put while it comes.
+  std::filesystem::path incoming_folder() const { return root_ / ".incoming"; }
+  /// A new project with its file, which is moved there as `input`. If the name is taken, it gets a number. Throws
+  /// InputError.
+  StudioProject create(const std::string& file, const std::string& input, const std::filesystem::path& content) const;
   void remove(const std::string& name) const;
 
  private:

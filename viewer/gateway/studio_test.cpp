@@ -6,87 +6,22 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <optional>
-#include <thread>
-
 #include "core/base/input_error.h"
 #include "core/bus/mem_bus.h"
-#include "core/testing/temp_folder.h"
 #include "viewer/gateway/client_for_test.h"
 #include "viewer/gateway/gateway.h"
+#include "viewer/gateway/scan_kind.h"
 #include "viewer/gateway/studio_choices.h"
+#include "viewer/gateway/studio_for_test.h"
 #include "viewer/gateway/surface_kind.h"
 
 namespace insula::gateway {
 namespace {
 
-namespace fs = std::filesystem;
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 using asio::ip::tcp;
-using nlohmann::json;
-
-constexpr const char* off_file = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-
-/// Writes what the stages write, says how far it is, and does what the file "behaviour" beside it says.
-constexpr const char* builder = R"(#!/bin/sh
-here=$(dirname "$0")
-behaviour=$(cat "$here/behaviour" 2>/dev/null)
-echo "$@" >> "$here/asked"
-what=$1
-case=$2
-while [ "$1" != --out ]; do shift; done
-echo "wall     40 %  checks"
-[ "$what$behaviour" = newhang ] && exec sleep 100
-[ "$what$behaviour" = newcrash ] && kill -SEGV $$
-[ "$what$behaviour" = newrefuse ] && echo "error: no sac was found" && exit 2
-mkdir -p "$2"
-[ "$what" = inspect ] && echo '{"openings": [], "neck": {"proposals": []}}' > "$2/inspect.json" && exit 0
-mkdir -p "$2/$case" && echo '{"problems": []}' > "$2/$case/report.json" && touch "$2/$case/3_clipping.xml"
-)";
-
-class StudioTest : public ::testing::Test {
- protected:
-  StudioTest() {
-    const fs::path program = folder_.write("bin/insula_case", builder);
-    fs::permissions(program, fs::perms::owner_all);
-    restart();
-  }
-  /// As after a crash of the gateway: nothing is said to the studio before.
-  void restart() { studio_.emplace(StudioPlaces{folder_.path() / "data", folder_.path() / "bin"}); }
-  void behave(const std::string& how) { folder_.write("bin/behaviour", how); }
-
-  json upload(const std::string& file = "vessel.off", const std::string& bytes = off_file) {
-    return json::parse(studio_->upload("file=" + file, bytes).json);
-  }
-  ApiAnswer ask(const std::string& act, const std::string& name, json more = json::object()) {
-    more["name"] = name;
-    return studio_->post(act, more.dump());
-  }
-  json project(const std::string& name) { return json::parse(studio_->get("project", "name=" + name).json); }
-  /// The project, once `what` is no longer at work.
-  json wait(const std::string& name, const char* what) {
-    for (int k = 0; k < 500; ++k) {
-      studio_->look();
-      const json now = project(name);
-      if (now[what]["state"] != "running") return now;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    ADD_FAILURE() << what << " does not end";
-    return project(name);
-  }
-  /// A project whose file has been read.
-  std::string ready(const std::string& file = "vessel.off") {
-    const std::string name = upload(file)["name"];
-    EXPECT_EQ(wait(name, "inspect")["inspect"]["state"], "done");
-    return name;
-  }
-
-  test_files::TempFolder folder_;
-  std::optional<Studio> studio_;
-};
 
 TEST(SurfaceKind, IsToldByContentNotByName) {
   std::string stl(84 + 50, '\0');
@@ -102,8 +37,8 @@ TEST(SurfaceKind, IsToldByContentNotByName) {
 
 TEST(SurfaceKind, OthersAreRefused) {
   for (const std::string& bytes :
-       {std::string("\x89PNG\r\n\x1a\n"), std::string("#!/bin/sh\nrm -r x\n"), std::string("PK\x03\x04"),
-        std::string("<html>"), std::string(84, '\0'), std::string("{\"a\": 1}"), std::string("glTF")})
+       {std::string("\x89PNG\r\n\x1a\n"), std::string("#!/bin/sh\nrm -r x\n"), std::string("<html>"),
+        std::string(84, '\0'), std::string("{\"a\": 1}"), std::string("glTF")})
     EXPECT_EQ(surface_kind(bytes).extension, "") << bytes;
   EXPECT_EQ(surface_kind("").refused, "this file is empty");
   EXPECT_NE(surface_kind("<VTKFile type=\"UnstructuredGrid\">").refused.find("PolyData"), std::string::npos);
@@ -148,7 +83,7 @@ TEST_F(StudioTest, AFileKeepsItsBytesAndGetsASafeName) {
 }
 
 TEST_F(StudioTest, AWrongFileMakesNoProject) {
-  EXPECT_EQ(studio_->upload("file=a.stl", "\x89PNG").status, 415);
+  EXPECT_EQ(sent("a.stl", "\x89PNG").status, 415);
   EXPECT_EQ(json::parse(studio_->get("projects", "").json)["projects"], json::array());
 }
 
@@ -306,7 +241,7 @@ TEST_F(StudioPages, TakeLargeFilesUpToALimit) {
   tcp::socket socket(io);
   pages::connect(socket, "127.0.0.1", gateway_->port());
   const std::string head = "PUT /api/studio/upload?file=a.off HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: " +
-                           std::to_string(Studio::most_upload_bytes + 1) + "\r\n\r\n";
+                           std::to_string(most_scan_bytes + 1) + "\r\n\r\n";
   asio::write(socket, asio::buffer(head));
   beast::flat_buffer buffer;
   pages::Response answer;

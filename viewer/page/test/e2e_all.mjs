@@ -27,6 +27,7 @@ const checks = [
   'certificate',
   'studio',
   'scene_editor',
+  'scan',
   'firefox',
   'sound_firefox',
 ];

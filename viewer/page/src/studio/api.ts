@@ -2,6 +2,7 @@
 // What the page of the case builder asks the gateway for, and checks before use (viewer/gateway/studio.h).
 import { text as message } from '../languages/text';
 import { Api, contentOf, list, number, numberOrNull, object, text } from '../start/api';
+import { type ScanFacts, scanFactsOf } from './scan/block';
 
 export type Point = [number, number, number];
 
@@ -43,6 +44,14 @@ export interface Facts {
 export type Neck = { plane: number[] } | { points: number[] } | null;
 
 export interface Choices {
+  /** Of a scan: vessel from here up. */
+  threshold: number | null;
+  label: number | null;
+  seed: Point | null;
+  /** Of the scan, only so much around the seed. */
+  aroundMm: number | null;
+  /** A point and the direction of what goes, each. */
+  cuts: number[][];
   unit: string;
   mirror: boolean;
   neck: Neck;
@@ -87,6 +96,8 @@ export interface Project {
   undo: boolean;
   redo: boolean;
   command: string;
+  /** null: the file is a surface. */
+  scan: { work: Work; facts: ScanFacts | null } | null;
   inspect: Work;
   facts: Facts | null;
   build: Work;
@@ -118,6 +129,11 @@ function neckOf(value: unknown): Neck {
 function choicesOf(value: unknown): Choices {
   const c = object(value);
   return {
+    threshold: numberOrNull(c.threshold),
+    label: numberOrNull(c.label),
+    seed: pointOrNull(c.seed),
+    aroundMm: numberOrNull(c.around_mm),
+    cuts: Array.isArray(c.cuts) ? c.cuts.map(numbers) : [],
     unit: text(c.unit),
     mirror: c.mirror === true,
     neck: neckOf(c.neck),
@@ -203,6 +219,7 @@ export function projectOf(json: unknown): Project {
     undo: p.undo === true,
     redo: p.redo === true,
     command: text(p.command),
+    scan: p.scan ? { work: workOf(p.scan), facts: scanFactsOf(object(p.scan).facts) } : null,
     inspect: workOf(inspect),
     facts: factsOf(inspect.facts),
     build: workOf(p.build),
@@ -215,7 +232,12 @@ export function projectOf(json: unknown): Project {
 export const refusals = (): string[] => [
   message('this file is no surface: STL, OBJ, PLY, OFF, glTF and VTP are taken'),
   message('this file is empty'),
-  message('this file is too large: 220 MB are taken'),
+  message('this file is too large: 700 MB are taken'),
+  message('this file is too large: 220 MB are taken of a surface'),
+  message('this scan needs another file: write it as one .nii file'),
+  message('this scan needs another file: write it as one .nrrd file'),
+  message('this scan needs another file: write it as one .mha file'),
+  message('this compressed file is no scan: NIfTI is taken'),
   message('this glTF needs other files: write it as one .glb file'),
   message('this VTK file holds no surface: write it as PolyData (.vtp)'),
   message('this case is being built'),
@@ -227,7 +249,7 @@ export const refusals = (): string[] => [
 ];
 
 /** An act that changes a project. */
-export type Act = 'choose' | 'undo' | 'redo' | 'build' | 'cancel' | 'play';
+export type Act = 'choose' | 'undo' | 'redo' | 'build' | 'cancel' | 'play' | 'again';
 
 export class StudioApi {
   private readonly api: Api;
@@ -251,7 +273,7 @@ export class StudioApi {
     projectOf(await this.api.ask(`studio/${act}`, {}, { name, ...more }));
   remove = async (name: string): Promise<void> => void (await this.api.ask('studio/remove', {}, { name }));
 
-  /** kind: 'surface', 'side', 'front', 'fissure' or 'report'. version: another one is another file. */
+  /** kind: 'surface', 'scan', 'side', 'front', 'fissure' or 'report'. version: another one is another file. */
   file(name: string, kind: string, version: string | number): string {
     const url = new URL(`api/studio/${kind}`, this.base);
     url.search = new URLSearchParams({ name, version: String(version) }).toString();

@@ -51,7 +51,7 @@ export class BuildPanel {
     const { build } = p;
     const runs = build.state === 'running';
     this.root.hidden = !p.facts && !runs;
-    this.build.disabled = runs || p.inspect.state !== 'done';
+    this.build.disabled = runs || p.inspect.state !== 'done' || (p.facts?.openings.length ?? 0) < 2;
     this.cancel.hidden = !runs;
     this.bar.hidden = this.steps.hidden = !runs;
     this.bar.value = build.percent;

@@ -10,6 +10,9 @@ import { FilePanel } from './file_panel';
 import { NeckPanel } from './neck_panel';
 import { chosenPlane } from './neck_plane';
 import { ResultPanel } from './result_panel';
+import { CutPanel } from './scan/cut_panel';
+import { ScanStep } from './scan/scan_step';
+import { Views } from './scan/views';
 import { SurfaceView } from './surface_view';
 import { reason } from './wording';
 
@@ -20,6 +23,8 @@ export interface Asks {
   /** Changes choices. */
   choose(choices: object): void;
   act(act: Act, more?: object): Promise<Project | null>;
+  /** Shows the surface, to be worked on. */
+  toSurface(): void;
 }
 
 export class Editor {
@@ -31,6 +36,8 @@ export class Editor {
   private readonly view = new SurfaceView();
   private readonly panels: { root: HTMLElement; show(p: Project): void }[];
   private readonly neck: NeckPanel;
+  private readonly scan: ScanStep;
+  private readonly views: Views;
   private shown = '';
   private surface = 0;
   private timer = 0;
@@ -45,10 +52,15 @@ export class Editor {
     const asks: Asks = {
       choose: (choices) => void this.act('choose', { choices }),
       act: (act, more) => this.act(act, more),
+      toSurface: () => this.views.choose(true),
     };
+    this.scan = new ScanStep(asks, api);
+    this.views = new Views(this.scan.view, this.view.root);
     this.neck = new NeckPanel(asks, this.view, () => this.project && this.mark(this.project));
     this.panels = [
       new FilePanel(asks),
+      this.scan,
+      new CutPanel(asks, this.view),
       this.neck,
       new CasePanel(asks),
       new BuildPanel(asks),
@@ -59,7 +71,7 @@ export class Editor {
     setText(this.title, name);
     const bar = el('div', { class: 'bar' }, this.title, this.undo, this.redo, this.say);
     const side = el('div', { class: 'steps' }, ...this.panels.map((p) => p.root));
-    this.root.append(bar, el('div', { class: 'columns' }, this.view.root, side));
+    this.root.append(bar, el('div', { class: 'columns' }, this.views.root, side));
     window.addEventListener('keydown', this.keys);
     void this.follow();
   }
@@ -68,6 +80,7 @@ export class Editor {
     this.ended = true;
     window.clearTimeout(this.timer);
     window.removeEventListener('keydown', this.keys);
+    this.scan.end();
     this.view.end();
   }
 
@@ -110,6 +123,7 @@ export class Editor {
     this.undo.disabled = !project.undo;
     this.redo.disabled = !project.redo;
     for (const panel of this.panels) panel.show(project);
+    this.views.show(project);
     void this.showSurface(project);
   }
 

@@ -42,6 +42,7 @@ export class FilePanel {
 
   show(p: Project): void {
     this.unit.value = p.choices.unit;
+    this.unit.parentElement!.hidden = p.scan !== null;
     this.left.input.checked = p.choices.mirror;
     this.anew.input.checked = p.choices.rebuildMm !== null;
     this.facts.replaceChildren(el('p', { class: 'hint' }, p.file), ...this.found(p));
@@ -65,10 +66,12 @@ export class FilePanel {
       el(
         'p',
         {},
-        text('{count, plural, one {# opening} other {# openings}}: {widths} mm wide', {
-          count: f.openings.length,
-          widths: openings,
-        }),
+        f.openings.length === 0
+          ? text('No openings yet.')
+          : text('{count, plural, one {# opening} other {# openings}}: {widths} mm wide', {
+              count: f.openings.length,
+              widths: openings,
+            }),
       ),
       ...f.notes
         .filter((n) => n.kind !== 'fact')

@@ -90,6 +90,7 @@ export class NeckPanel {
 
   private begin(): void {
     this.points = [];
+    this.asks.toSurface();
     this.view.onPoint = (p) => this.take(p);
     setText(this.click, text('Cancel'));
     setText(this.say, text('Click on one side of the neck.'));

@@ -10,7 +10,10 @@ const megabyte = 1e6;
 export class ProjectList {
   readonly root = el('div', { class: 'projects' });
   private readonly say = el('p', { class: 'say', role: 'alert' });
-  private readonly file = el('input', { type: 'file', accept: '.stl,.obj,.ply,.off,.gltf,.glb,.vtp' });
+  private readonly file = el('input', {
+    type: 'file',
+    accept: '.stl,.obj,.ply,.off,.gltf,.glb,.vtp,.nii,.gz,.mha,.nrrd,.dcm,.zip',
+  });
   private readonly rows = el('ul', {});
   private readonly none = el('p', { class: 'hint' }, text('There are no projects yet.'));
   private readonly drop = el('section', { class: 'drop' });
@@ -25,6 +28,7 @@ export class ProjectList {
     this.drop.append(
       el('h2', {}, text('A new case')),
       el('p', {}, text('Drop the surface of a vessel with an aneurysm here: STL, OBJ, PLY, OFF, glTF or VTP.')),
+      el('p', {}, text('Or drop a scan: NIfTI, MetaImage, NRRD, or a DICOM series as one zip file.')),
       pick,
       this.file,
       this.say,

@@ -2,6 +2,7 @@
 // The surface with its openings and its neck, to be turned and clicked on. Millimetres.
 import {
   AmbientLight,
+  BufferAttribute,
   type BufferGeometry,
   Color,
   DirectionalLight,
@@ -24,10 +25,18 @@ import { text } from '../languages/text';
 import type { Facts, Point } from './api';
 import { ball, ring, solidDisc } from './marks';
 import type { NeckPlane } from './neck_plane';
+import { type Cut, cutThrough, partBeyond } from './scan/cut_plane';
 
 const stillPx = 4; // a press that moves farther turns the view
 const fieldOfView = 35;
-const colours = { wall: '#c8756b', inlet: '#5aa9ff', outlet: '#9fd0a8', neck: '#ffffff', point: '#ffd54a' };
+const colours = {
+  wall: '#c8756b',
+  inlet: '#5aa9ff',
+  outlet: '#9fd0a8',
+  neck: '#ffffff',
+  point: '#ffd54a',
+  goes: '#4b8fe0',
+};
 
 export class SurfaceView {
   readonly canvas = el('canvas', { tabindex: '0', role: 'img' });
@@ -38,7 +47,8 @@ export class SurfaceView {
   private readonly marks = new Group();
   private readonly lamp = new DirectionalLight('#ffffff', 2.2);
   private controls: OrbitControls | null = null;
-  private surface: Mesh | null = null;
+  private mesh: Mesh<BufferGeometry, MeshStandardMaterial> | null = null;
+  private readonly cut = new Group();
   private pressed = new Vector2();
   private waiting = false;
   private readonly watch = new ResizeObserver(() => this.resize());
@@ -49,12 +59,12 @@ export class SurfaceView {
     this.canvas.setAttribute('aria-label', text('The vessel with its openings and the plane of the neck'));
     this.scene.background = new Color('#14181c');
     this.camera.add(this.lamp);
-    this.scene.add(this.camera, new AmbientLight('#ffffff', 0.7), this.marks);
+    this.scene.add(this.camera, new AmbientLight('#ffffff', 0.7), this.marks, this.cut);
     this.canvas.addEventListener('pointerdown', (e) => this.pressed.set(e.clientX, e.clientY));
     this.canvas.addEventListener('pointerup', (e) => this.released(e));
     this.watch.observe(this.root);
     Object.assign(window, {
-      __studio: { screenOf: (p: Point) => this.screenOf(p), ready: () => this.surface !== null },
+      __studio: { screenOf: (p: Point) => this.screenOf(p), ready: () => this.mesh !== null },
     });
   }
 
@@ -69,16 +79,53 @@ export class SurfaceView {
     const geometry = await new PLYLoader().loadAsync(url);
     geometry.computeVertexNormals();
     geometry.computeBoundingSphere();
-    if (this.surface) {
-      this.scene.remove(this.surface);
-      this.surface.geometry.dispose();
+    const before = this.mesh?.geometry.boundingSphere;
+    if (this.mesh) {
+      this.scene.remove(this.mesh);
+      this.mesh.geometry.dispose();
     }
-    this.surface = new Mesh(
-      geometry,
-      new MeshStandardMaterial({ color: colours.wall, roughness: 0.55, side: DoubleSide }),
-    );
-    this.scene.add(this.surface);
-    this.stand(geometry, neck?.normal ?? new Vector3(0, 0, 1));
+    this.mesh = new Mesh(geometry, new MeshStandardMaterial({ vertexColors: true, roughness: 0.55, side: DoubleSide }));
+    this.scene.add(this.mesh);
+    this.showCut(null);
+    const now = geometry.boundingSphere!;
+    if (!before || before.center.distanceTo(now.center) > now.radius || now.radius > 1.5 * before.radius)
+      this.stand(geometry, neck?.normal ?? new Vector3(0, 0, 1));
+  }
+
+  /** null: none is loaded. */
+  get surface(): { positions: ArrayLike<number>; triangles: ArrayLike<number> } | null {
+    if (!this.mesh) return null;
+    const { attributes, index } = this.mesh.geometry;
+    return { positions: attributes.position!.array, triangles: index!.array };
+  }
+
+  /** The cut along a line between two places of the window. Null: there is no vessel. */
+  cutAlong(from: readonly [number, number], to: readonly [number, number]): Cut | null {
+    const { mesh } = this;
+    if (!mesh) return null;
+    const ray = (share: number) => this.ray(from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1]));
+    return cutThrough({
+      direction: (share) => ray(share).ray.direction.clone(),
+      hits: (share) =>
+        ray(share)
+          .intersectObject(mesh)
+          .map((hit) => hit.point),
+    });
+  }
+
+  /** The plane of a cut, and the part that goes in another colour. Null: none. */
+  showCut(cut: Cut | null): void {
+    this.cut.clear();
+    const { mesh, surface } = this;
+    if (!mesh || !surface) return;
+    const goes = cut ? partBeyond(surface.positions, surface.triangles, cut) : null;
+    const [wall, gone] = [new Color(colours.wall), new Color(colours.goes)];
+    const paint = new Float32Array(surface.positions.length);
+    for (let v = 0; 3 * v < paint.length; v++) (goes?.[v] ? gone : wall).toArray(paint, 3 * v);
+    mesh.geometry.setAttribute('color', new BufferAttribute(paint, 3));
+    const radius = mesh.geometry.boundingSphere!.radius / 6;
+    if (cut) this.cut.add(...solidDisc(cut.point, cut.normal, radius, colours.goes));
+    this.draw();
   }
 
   private stand(geometry: BufferGeometry, up: Vector3): void {
@@ -117,13 +164,17 @@ export class SurfaceView {
   }
 
   private released(e: PointerEvent): void {
-    if (!this.onPoint || !this.surface || this.pressed.distanceTo(new Vector2(e.clientX, e.clientY)) > stillPx) return;
-    const { left, top, width, height } = this.canvas.getBoundingClientRect();
-    const at = new Vector2(((e.clientX - left) / width) * 2 - 1, 1 - ((e.clientY - top) / height) * 2);
-    const ray = new Raycaster();
-    ray.setFromCamera(at, this.camera);
-    const hit = ray.intersectObject(this.surface)[0];
+    if (!this.onPoint || !this.mesh || this.pressed.distanceTo(new Vector2(e.clientX, e.clientY)) > stillPx) return;
+    const hit = this.ray(e.clientX, e.clientY).intersectObject(this.mesh)[0];
     if (hit) this.onPoint(hit.point.clone());
+  }
+
+  /** Through a place of the window. */
+  private ray(x: number, y: number): Raycaster {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const out = new Raycaster();
+    out.setFromCamera(new Vector2(((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2), this.camera);
+    return out;
   }
 
   /** Place of a point on the page, px. */

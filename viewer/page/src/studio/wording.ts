@@ -17,6 +17,11 @@ const here: readonly [RegExp, string][] = [
   [/: give --unit (\w+)/g, ': choose the unit $1'],
   [/with --unit if/g, 'if'],
   [/^--neck-points: /g, ''],
+  [/name a point in it with --seed/g, 'put the seed into it'],
+  [
+    /name a point in it \(--seed\) and take what is near it \(--around "[^"]*"\)/g,
+    'put the seed into it and take a part',
+  ],
 ];
 
 /** A message of the case builder for somebody who has no command line. */

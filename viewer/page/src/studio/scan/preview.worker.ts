@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Finds the vessel in a scan and its surface, beside the page's own thread.
+import { surfaceNet } from './surface_net';
+import { type Stored, type Vec, vesselGrid, type VesselGrid, type Wanted } from './vessel_grid';
+
+export type Ask = { stored: Stored; size: Vec } | { wanted: Wanted };
+
+export interface Preview {
+  grid: Pick<VesselGrid, 'size' | 'step' | 'from' | 'part'>;
+  positions: Float32Array;
+  triangles: Uint32Array;
+  ms: number;
+}
+
+let scan: { stored: Stored; size: Vec } | null = null;
+
+self.onmessage = ({ data }: MessageEvent<Ask>) => {
+  if ('stored' in data) {
+    scan = data;
+    return;
+  }
+  if (!scan) return;
+  const began = performance.now();
+  const { size, step, from, part, level } = vesselGrid(scan.stored, scan.size, data.wanted);
+  const { positions, triangles } = surfaceNet(size, level);
+  const answer: Preview = { grid: { size, step, from, part }, positions, triangles, ms: performance.now() - began };
+  self.postMessage(answer, { transfer: [part.buffer, positions.buffer, triangles.buffer] });
+};

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the views of a scan show in common.
+import type { Choices } from '../api';
+import type { Block, Vec } from './block';
+import type { Preview } from './preview.worker';
+import type { Wanted } from './vessel_grid';
+
+/** Share of the voxels that may be darker or brighter than what the window shows. */
+const dark = 0.02;
+const bright = 0.999;
+
+export class ScanState {
+  /** The voxel at which all three slices meet. */
+  cross: Vec;
+  low: number;
+  high: number;
+  threshold: number;
+  label: number | null = null;
+  /** mm */
+  seed: Vec | null = null;
+  aroundMm: number | null = null;
+  found: Preview | null = null;
+
+  constructor(
+    readonly block: Block,
+    private readonly changed: () => void,
+  ) {
+    this.cross = block.size.map((n) => Math.floor(n / 2)) as Vec;
+    this.threshold = block.facts.threshold;
+    this.low = this.share(dark);
+    this.high = Math.max(this.share(bright), this.low + 1e-6);
+    if (block.facts.labels.length > 0) [this.low, this.high] = [0, block.facts.most];
+  }
+
+  /** Takes what is chosen. */
+  take({ threshold, label, seed, aroundMm }: Choices): void {
+    if (threshold !== null) this.threshold = threshold;
+    this.label = label;
+    const moved = seed && String(seed) !== String(this.seed);
+    this.seed = seed;
+    this.aroundMm = aroundMm;
+    if (moved) this.cross = this.block.voxel(seed);
+    this.changed();
+  }
+
+  /** Moves the crosshair by some voxels along an axis, or to a voxel. */
+  move(axis: number, to: number): void {
+    this.cross[axis] = Math.min(this.block.size[axis]! - 1, Math.max(0, Math.round(to)));
+    this.changed();
+  }
+
+  window(low: number, high: number): void {
+    this.low = low;
+    this.high = Math.max(high, low + 1e-6);
+    this.changed();
+  }
+
+  wanted(): Wanted {
+    const [from, to] = this.block.around(this.seed, this.aroundMm);
+    return {
+      threshold: this.block.storedOf(this.threshold),
+      label: this.label === null ? null : this.block.storedOf(this.label),
+      seed: this.seed && this.block.voxel(this.seed),
+      from,
+      to,
+    };
+  }
+
+  /** The value below which that share of all voxels is. */
+  private share(part: number): number {
+    const { counts, least, most } = this.block.facts;
+    const all = counts.reduce((sum, n) => sum + n, 0);
+    let sum = 0;
+    const bin = counts.findIndex((n) => (sum += n) >= part * all);
+    return least + ((Math.max(0, bin) + 0.5) / Math.max(1, counts.length)) * (most - least);
+  }
+}

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The border of what is positive on a grid, as one vertex in each cell that it crosses (S. F. Gibson, "Constrained
+// elastic surface nets", 1998). Outside of the grid all is negative, so the surface is closed.
+
+export interface Net {
+  /** Positions in nodes of the grid. */
+  positions: Float32Array;
+  triangles: Uint32Array;
+}
+
+const corners = [0, 1, 2, 3, 4, 5, 6, 7] as const;
+/** Pairs of corners, bits: x, y, z. */
+const edges: readonly (readonly [number, number])[] = corners.flatMap((c) =>
+  [1, 2, 4].filter((bit) => (c & bit) === 0).map((bit) => [c, c | bit] as const),
+);
+
+class Growing {
+  positions = new Float32Array(3 * 4096);
+  triangles = new Uint32Array(6 * 4096);
+  points = 0;
+  corners = 0;
+
+  point(x: number, y: number, z: number): number {
+    if (3 * this.points + 3 > this.positions.length) this.positions = Growing.twice(this.positions);
+    this.positions.set([x, y, z], 3 * this.points);
+    return this.points++;
+  }
+  /** Four points around an edge, turned so that the triangles face outward. */
+  quad(a: number, b: number, c: number, d: number, turned: boolean): void {
+    if (this.corners + 6 > this.triangles.length) this.triangles = Growing.twice(this.triangles);
+    this.triangles.set(turned ? [a, b, c, a, c, d] : [a, d, c, a, c, b], this.corners);
+    this.corners += 6;
+  }
+  private static twice<T extends Float32Array | Uint32Array>(old: T): T {
+    const out = new (old.constructor as new (n: number) => T)(2 * old.length);
+    out.set(old);
+    return out;
+  }
+}
+
+/** The grid with one more node on each side, which is outside. */
+class Padded {
+  readonly across: readonly [number, number, number];
+  readonly values: Float32Array;
+
+  constructor(
+    readonly size: readonly [number, number, number],
+    given: Float32Array,
+  ) {
+    const [nx, ny, nz] = size;
+    this.across = [1, nx + 2, (nx + 2) * (ny + 2)];
+    this.values = new Float32Array((nx + 2) * (ny + 2) * (nz + 2)).fill(-1);
+    for (let k = 0; k < nz; k++)
+      for (let j = 0; j < ny; j++) {
+        const from = nx * (j + ny * k);
+        this.values.set(given.subarray(from, from + nx), this.index(1, j + 1, k + 1));
+      }
+  }
+  index(i: number, j: number, k: number): number {
+    return i + this.across[1] * j + this.across[2] * k;
+  }
+  /** Of the cell whose first corner is node n: the mean of where the border crosses its edges. */
+  crossing(n: number): readonly [number, number, number] {
+    const v = corners.map((c) => this.values[n + this.offset(c)]!);
+    const sum = [0, 0, 0] as [number, number, number];
+    let count = 0;
+    for (const [a, b] of edges) {
+      if (v[a]! > 0 === v[b]! > 0) continue;
+      const t = v[a]! / (v[a]! - v[b]!);
+      for (const axis of [0, 1, 2] as const) {
+        const [from, to] = [(a >> axis) & 1, (b >> axis) & 1];
+        sum[axis] += from + t * (to - from);
+      }
+      count++;
+    }
+    return [sum[0] / count, sum[1] / count, sum[2] / count];
+  }
+  private offset(corner: number): number {
+    return (corner & 1) + this.across[1] * ((corner >> 1) & 1) + this.across[2] * (corner >> 2);
+  }
+}
+
+/** Which of the four nodes at (i, j..j+1, k..k+1) are inside, as bits. */
+function side(grid: Padded, n: number): number {
+  const [, y, z] = grid.across;
+  const v = grid.values;
+  return (v[n]! > 0 ? 1 : 0) | (v[n + y]! > 0 ? 2 : 0) | (v[n + z]! > 0 ? 4 : 0) | (v[n + y + z]! > 0 ? 8 : 0);
+}
+
+export function surfaceNet(size: readonly [number, number, number], values: Float32Array): Net {
+  const grid = new Padded(size, values);
+  const [nx, ny, nz] = size;
+  const out = new Growing();
+  const width = nx + 1;
+  // Points of the cells of two layers. Cells begin at the nodes that were added in front.
+  let [below, here] = [new Int32Array(width * (ny + 1)), new Int32Array(width * (ny + 1))];
+  for (let k = 0; k <= nz; k++) {
+    [below, here] = [here, below];
+    for (let j = 0; j <= ny; j++) {
+      const row = grid.index(0, j, k);
+      let left = side(grid, row);
+      for (let i = 0; i <= nx; i++) {
+        const right = side(grid, row + i + 1);
+        const even = left === right && (left === 0 || left === 15);
+        if (!even) {
+          const [x, y, z] = grid.crossing(row + i);
+          const c = i + width * j;
+          here[c] = out.point(i + x - 1, j + y - 1, k + z - 1);
+          const inside = (left & 1) === 1;
+          // Edges that begin at the cell's first corner have all four cells behind them.
+          if (inside !== ((right & 1) === 1)) out.quad(here[c], here[c - width]!, below[c - width]!, below[c]!, inside);
+          if (inside !== ((left & 2) === 2)) out.quad(here[c], below[c]!, below[c - 1]!, here[c - 1]!, inside);
+          if (inside !== ((left & 4) === 4))
+            out.quad(here[c], here[c - 1]!, here[c - 1 - width]!, here[c - width]!, inside);
+        }
+        left = right;
+      }
+    }
+  }
+  return { positions: out.positions.slice(0, 3 * out.points), triangles: out.triangles.slice(0, out.corners) };
+}

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What of a scan is vessel, on the nodes of a coarser grid: the connected part that the case builder would keep
+// (tools/case_builder/grid_surface.cpp).
+
+export type Vec = [number, number, number];
+export type Stored = Uint8Array | Int16Array;
+
+/** What the author has chosen, in voxels of the block and in stored values. */
+export interface Wanted {
+  /** Vessel from here up. */
+  threshold: number;
+  /** In place of the threshold. */
+  label: number | null;
+  seed: Vec | null;
+  from: Vec;
+  to: Vec;
+}
+
+export const mostNodes = 144;
+
+export interface VesselGrid {
+  size: Vec;
+  /** Voxels a node. */
+  step: number;
+  /** Of the voxel of the first node. */
+  from: Vec;
+  /** Above 0 in the vessel, about in [-1, 1] near its border. */
+  level: Float32Array;
+  /** 1: kept, 2: vessel too, but another piece. */
+  part: Uint8Array;
+  /** Nodes that were looked at, and those that were looked at for their neighbours: what a move costs. */
+  work: number;
+}
+
+/** The brightest voxel of each node: thin vessels stay connected. */
+function sampled(stored: Stored, size: Vec, w: Wanted, grid: VesselGrid): void {
+  const [nx, ny] = size;
+  const { step, from, level } = grid;
+  const soft = 1 / Math.max(1, Math.abs(w.threshold) / 4);
+  let n = 0;
+  for (let k = 0; k < grid.size[2]; k++)
+    for (let j = 0; j < grid.size[1]; j++)
+      for (let i = 0; i < grid.size[0]; i++, n++) {
+        let most = -Infinity;
+        for (let c = 0; c < step; c++)
+          for (let b = 0; b < step; b++) {
+            const row = from[0] + i * step + nx * (from[1] + j * step + b + ny * (from[2] + k * step + c));
+            for (let a = 0; a < step; a++) {
+              const v = stored[row + a]!;
+              const s = w.label === null ? v : v === w.label ? 1 : 0;
+              if (s > most) most = s;
+            }
+          }
+        const over = w.label === null ? (most - w.threshold) * soft : most - 0.5;
+        level[n] = over === 0 ? 1e-6 : Math.min(1, Math.max(-1, over));
+      }
+}
+
+/** Marks the nodes connected with `start`. Returns how many. */
+function flood(grid: VesselGrid, start: number, mark: number, list: Int32Array): number {
+  const { part, level } = grid;
+  const [nx, ny, nz] = grid.size;
+  const across = [1, nx, nx * ny] as const;
+  let count = 1;
+  list[0] = start;
+  part[start] = mark;
+  const visit = (to: number) => {
+    if (part[to] !== 0 || level[to]! <= 0) return;
+    part[to] = mark;
+    list[count++] = to;
+  };
+  for (let at = 0; at < count; at++) {
+    const n = list[at]!;
+    const [i, j, k] = [n % nx, Math.floor(n / nx) % ny, Math.floor(n / (nx * ny))];
+    if (i > 0) visit(n - 1);
+    if (i + 1 < nx) visit(n + 1);
+    if (j > 0) visit(n - across[1]);
+    if (j + 1 < ny) visit(n + across[1]);
+    if (k > 0) visit(n - across[2]);
+    if (k + 1 < nz) visit(n + across[2]);
+  }
+  grid.work += count;
+  return count;
+}
+
+/** The vessel's node nearest to the seed; -1: there is none. */
+function nearest(grid: VesselGrid, seed: Vec): number {
+  const at = seed.map((x, a) => (x - grid.from[a]!) / grid.step - 0.5 + 0.5 / grid.step);
+  let [best, least, n] = [-1, Infinity, 0];
+  for (let k = 0; k < grid.size[2]; k++)
+    for (let j = 0; j < grid.size[1]; j++)
+      for (let i = 0; i < grid.size[0]; i++, n++) {
+        if (grid.level[n]! <= 0) continue;
+        const away = (i - at[0]!) ** 2 + (j - at[1]!) ** 2 + (k - at[2]!) ** 2;
+        if (away < least) [best, least] = [n, away];
+      }
+  return best;
+}
+
+/** Keeps the piece at the seed, else the largest. Others are marked with 2. */
+function keepOne(grid: VesselGrid, seed: Vec | null): void {
+  const list = new Int32Array(grid.level.length);
+  const { level, part } = grid;
+  const kept = 1;
+  if (seed) {
+    const start = nearest(grid, seed);
+    if (start >= 0) flood(grid, start, kept, list);
+  } else {
+    let [largest, most] = [-1, 0];
+    for (let n = 0; n < level.length; n++) {
+      if (part[n] !== 0 || level[n]! <= 0) continue;
+      const count = flood(grid, n, 3, list);
+      if (count > most) [largest, most] = [n, count];
+    }
+    for (let n = 0; n < part.length; n++) if (part[n] === 3) part[n] = 0;
+    if (largest >= 0) flood(grid, largest, kept, list);
+  }
+  for (let n = 0; n < level.length; n++)
+    if (level[n]! > 0 && part[n] === 0) {
+      part[n] = 2;
+      level[n] = -level[n]!;
+    }
+}
+
+export function vesselGrid(stored: Stored, size: Vec, wanted: Wanted): VesselGrid {
+  const span = wanted.to.map((x, a) => x - wanted.from[a]! + 1);
+  const step = Math.max(1, Math.ceil(Math.max(...span) / mostNodes));
+  const nodes = span.map((n) => Math.max(1, Math.floor(n / step))) as Vec;
+  const count = nodes[0] * nodes[1] * nodes[2];
+  const grid: VesselGrid = {
+    size: nodes,
+    step,
+    from: wanted.from,
+    level: new Float32Array(count),
+    part: new Uint8Array(count),
+    work: count,
+  };
+  sampled(stored, size, wanted, grid);
+  keepOne(grid, wanted.seed);
+  return grid;
+}
