@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks the shipped lobes: manifest, checksums, counts, tetrahedra's quality, closed outward surfaces, free gaps.
+"""Checks the meshes of an approach: manifest, checksums, counts, tetrahedra's quality, closed outward surfaces, gaps.
 
 Usage: check_meshes.py MESH_FOLDER      (the folder that holds manifest.json)
 """
@@ -17,6 +17,15 @@ import mesh_files  # noqa: E402
 FIELDS = ("file", "unit", "frame", "source", "licence", "attribution", "sha256", "rebuild")
 FACES = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))  # outward, opposite vertex 0, 1, 2, 3
 MIN_DIHEDRAL_DEG = 10.0
+# Nodes of the lobes that are stepped in real time, least and most.
+NODES = {
+    "frontal.msh": (480, 620),
+    "temporal.msh": (280, 380),
+    "right_frontal.msh": (420, 560),
+    "left_frontal.msh": (300, 420),
+}
+# The falx lies in the gap between the lobes.
+LEAST_GAP, LEAST_GAP_OF_FALX = 0.5, 0.1  # mm
 
 
 def sub(a, b):
@@ -128,7 +137,7 @@ def main():
     check = Checker()
     entries = {e["file"]: e for e in json.loads((folder / "manifest.json").read_text())}
     listed = set(entries)
-    present = {p.name for p in folder.iterdir()} - {"manifest.json", "README.md"}
+    present = {p.name for p in folder.iterdir()} - {"manifest.json", "README.md", "approach.json"}
     check.that(listed == present, "manifest and folder differ: %s" % sorted(listed ^ present))
     surfaces = {}
     for name, entry in entries.items():
@@ -157,19 +166,21 @@ def main():
             )
             check_surface(check, name, points, triangles)
             surfaces[name] = [p for p in points if all(math.isfinite(c) for c in p)]
-    for name, low, high in (("frontal.msh", 480, 620), ("temporal.msh", 280, 380)):
-        check.that(low <= entries[name]["nodes"] <= high, "%s: %d nodes" % (name, entries[name]["nodes"]))
-    large = entries["frontal_large.msh"]["nodes"] + entries["temporal_large.msh"]["nodes"]
-    check.that(large >= 10000, "the large pair has %d nodes" % large)
-    for name in ("frontal_surface.ply", "temporal_surface.ply"):
-        check.that(
-            10000 <= entries[name]["triangles"] <= 14000, "%s: %d triangles" % (name, entries[name]["triangles"])
-        )
+    lobes = json.loads((folder / "approach.json").read_text())["lobes"]
+    for lobe in lobes:
+        low, high = NODES[lobe + ".msh"]
+        nodes = entries[lobe + ".msh"]["nodes"]
+        check.that(low <= nodes <= high, "%s.msh: %d nodes" % (lobe, nodes))
+        triangles = entries[lobe + "_surface.ply"]["triangles"]
+        check.that(10000 <= triangles <= 17000, "%s_surface.ply: %d triangles" % (lobe, triangles))
+    large = [entries[lobe + "_large.msh"]["nodes"] for lobe in lobes if lobe + "_large.msh" in entries]
+    check.that(not large or sum(large) >= 10000, "the large pair has %d nodes" % sum(large))
     names = sorted(surfaces)
     for i, a in enumerate(names):
         for b in names[i + 1 :]:
             gap = vertex_gap(surfaces[a], surfaces[b])
-            check.that(gap >= 0.5, "%s and %s come within %.2f mm" % (a, b, gap))
+            least = LEAST_GAP_OF_FALX if "falx_surface.ply" in (a, b) else LEAST_GAP
+            check.that(gap >= least, "%s and %s come within %.2f mm" % (a, b, gap))
             print("%s - %s: points at least %.2f mm apart" % (a, b, gap))
     fissure = json.loads((folder / "fissure.json").read_text())
     check.that(fissure["unit"] == "mm" and len(fissure["stations"]) >= 5, "fissure.json: too few stations")

@@ -26,7 +26,8 @@ void remove_unwanted_clips(const fs::path& library, const fs::path& copies, cons
 
 }  // namespace
 
-Assets link_assets(const CaseFolder& folder, const fs::path& project, const std::vector<std::string>& clips) {
+Assets link_assets(const CaseFolder& folder, const fs::path& project, const std::vector<std::string>& clips,
+                   const Approach& approach) {
   const fs::path here = fs::weakly_canonical(folder.path), root = fs::weakly_canonical(project);
   const fs::path inside = here.lexically_relative(root);
   Assets out;
@@ -38,14 +39,16 @@ Assets link_assets(const CaseFolder& folder, const fs::path& project, const std:
   }
   // A scene may name files below the folder that holds "meshes" alone: the case brings all it needs.
   out = {"meshes", "scenes/parts", "../../lobes", true};
-  for (const char* part : {"fissure.xml", "retracted_fissure.xml", "brain_limits.xml", "vessel_limits.xml", "bleb.xml",
-                           "metrics.xml", "strand_metrics.xml", "bleeding_metrics.xml"})
-    copy_all(root / "scenes/parts" / part, here / "scenes/parts" / part);
+  std::vector<std::string> parts{
+      "vessel_limits.xml",    "bleb.xml",           "metrics.xml",      "strand_metrics.xml",
+      "bleeding_metrics.xml", approach.closed_part, approach.open_part, approach.limits_part};
+  parts.insert(parts.end(), approach.more_parts.begin(), approach.more_parts.end());
+  for (const std::string& part : parts) copy_all(root / "scenes/parts" / part, here / "scenes/parts" / part);
   for (const char* tool : {"suction", "dissector", "clip_applier", "retractor", "micro_doppler"})
     copy_all(root / "meshes/instruments" / tool, here / "meshes/instruments" / tool);
   for (const std::string& clip : clips) copy_all(root / "meshes/clips" / clip, here / "meshes/clips" / clip);
   remove_unwanted_clips(root / "meshes/clips", here / "meshes/clips", clips);
-  copy_all(root / "meshes/window", here / "meshes/window");
+  for (const std::string& bone : approach.rigid_folders) copy_all(root / "meshes" / bone, here / "meshes" / bone);
   return out;
 }
 

@@ -79,18 +79,18 @@ void move(mesh_tool::NiftiVolume& v, const Placement& p) {
 
 }  // namespace
 
-mesh_tool::FieldOptions field_options() {
+mesh_tool::FieldOptions field_options(const Approach& approach) {
   mesh_tool::FieldOptions f;
-  f.spacing = field_spacing, f.radius = fissure_radius, f.coarse_gap = 0.45;
-  f.centre = {fissure_centre.x(), fissure_centre.y(), fissure_centre.z()};
+  f.spacing = field_spacing, f.radius = approach.radius, f.coarse_gap = 0.45;
+  f.centre = {approach.centre.x(), approach.centre.y(), approach.centre.z()};
   return f;
 }
 
-Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const fs::path& project,
+Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const Approach& approach,
                     std::vector<Note>& notes) {
-  const mesh_tool::FieldOptions f = field_options();
+  const mesh_tool::FieldOptions f = field_options(approach);
   constexpr double near_enough = 1.0;  // mm; brains of one template differ by less
-  const Course wanted = shipped_course(project);
+  const Course wanted = shipped_course(approach);
   const auto course = [&] { return course_of(describe_cleft(fields, 0, 1, f, {1, 0, 0})); };
   Course now = course();
   const double before = distance(wanted, now);
@@ -100,7 +100,7 @@ Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const fs:
   for (int round = 0; round < 3 && off > near_enough; ++round) {
     const Placement step = fit(wanted, now);
     const Placement next{step.rotation * whole.rotation, step.rotation * whole.shift + step.shift};
-    shift = (next.apply(fissure_centre) - fissure_centre).norm(),
+    shift = (next.apply(approach.centre) - approach.centre).norm(),
     turn = Eigen::AngleAxisd(next.rotation).angle() * 180 / std::numbers::pi;
     if (shift > farthest_move || turn > widest_turn) {
       notes.push_back(
@@ -141,25 +141,25 @@ Placement brain_motion(const CaseFolder& folder) {
 namespace {
 
 /// Makes the surfaces of the three lobes. Throws if two of them intersect.
-std::vector<mesh_tool::TriangleMesh> surfaces_of(const mesh_tool::PartFields& fields) {
+std::vector<mesh_tool::TriangleMesh> surfaces_of(const mesh_tool::PartFields& fields, const Approach& approach) {
   std::vector<mesh_tool::TriangleMesh> surfaces;
   for (std::size_t a = 0; a < 3; ++a)
     surfaces.push_back(mesh_surface(fields.grid, fields.fine[a], growing(fields, a, edge[a], focus), edge_error));
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t b = a + 1; b < 3; ++b)
       if (clearance(surfaces[a], surfaces[b]).intersect)
-        throw InputError(
-            fmt::format("--brain: the surfaces of {} and {} run through each other", lobe_names[a], lobe_names[b]));
+        throw InputError(fmt::format("--brain: the surfaces of {} and {} run through each other", approach.parts()[a],
+                                     approach.parts()[b]));
   return surfaces;
 }
 
 /// Writes the lobes' files. Returns the data of each lobe for the report.
 Json write_lobes(const CaseFolder& folder, const std::vector<mesh_tool::TriangleMesh>& surfaces,
-                 const std::vector<mesh_tool::TetMesh>& meshes) {
+                 const std::vector<mesh_tool::TetMesh>& meshes, const Approach& approach) {
   fs::create_directories(folder.brain());
   Json out = Json::array();
   for (std::size_t a = 0; a < 3; ++a) {
-    const std::string name = lobe_names[a];
+    const std::string name = approach.parts()[a];
     write_ply(folder.brain() / (name + "_surface.ply"), as_mesh(surfaces[a]), "unit mm; of the case's own brain");
     Json one{{"name", name},
              {"triangles", surfaces[a].triangles.size()},
@@ -175,25 +175,25 @@ Json write_lobes(const CaseFolder& folder, const std::vector<mesh_tool::Triangle
 }
 
 /// Meshes the brain and writes its files.
-Json mesh_brain(BrainLabels& given, const CaseFolder& folder, const fs::path& project, const Options& o,
+Json mesh_brain(BrainLabels& given, const CaseFolder& folder, const Approach& approach, const Options& o,
                 std::vector<Note>& notes, Progress& progress) {
-  const mesh_tool::FieldOptions f = field_options();
+  const mesh_tool::FieldOptions f = field_options(approach);
   Json json;
   progress.step("borders of the lobes");
   mesh_tool::PartFields fields = build_part_fields(given.volume, nullptr, given.parts, f);
   Placement motion;
-  if (!o.brain_in_place && given.own_fissure) motion = settle_in(given, fields, project, notes);
+  if (!o.brain_in_place && given.own_fissure) motion = settle_in(given, fields, approach, notes);
   json["rotation"] = Json::array();
   for (int k = 0; k < 9; ++k) json["rotation"].push_back(rounded(motion.rotation(k / 3, k % 3)));
   json["shift_mm"] = to_json(motion.shift);
   progress.step("surfaces");
-  const std::vector<mesh_tool::TriangleMesh> surfaces = surfaces_of(fields);
+  const std::vector<mesh_tool::TriangleMesh> surfaces = surfaces_of(fields, approach);
   progress.step("tetrahedra");
   const std::vector<mesh_tool::TetMesh> meshes = lobes_of(fields, f.coarse_gap, o.brain_nodes, notes);
   if (clearance(boundary_mesh(meshes[0]), boundary_mesh(meshes[1])).intersect)
     throw InputError(
         "--brain: the tetrahedra of the two lobes run through each other; allow more nodes with --brain-nodes");
-  json["lobes"] = write_lobes(folder, surfaces, meshes);
+  json["lobes"] = write_lobes(folder, surfaces, meshes, approach);
   return json;
 }
 
@@ -205,20 +205,24 @@ void run_brain(const CaseFolder& folder, const fs::path& project, const Options&
   fs::remove(folder.path / "brain.json", ignored);
   if (o.brain.empty()) return;
   if (!o.lobes.empty()) throw InputError("--brain and --lobes exclude each other");
+  const Approach approach = read_approach(project, o.approach);
+  if (!fs::exists(course_file(approach)))
+    throw InputError("--brain: a brain of your own is laid over the course of a fissure, which " + approach.title +
+                     " does not have: leave out --brain or --approach");
   progress.stage("brain", 4);
   progress.step("reading the brain");
   std::vector<Note> notes;
-  BrainLabels given = read_brain(o, project, notes);
+  BrainLabels given = read_brain(o, project, approach, notes);
   Json json;
   try {
-    json = mesh_brain(given, folder, project, o, notes, progress);
+    json = mesh_brain(given, folder, approach, o, notes, progress);
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& e) {  // the mesh generator's own
     throw InputError(fmt::format(
-        "--brain: {}. What is meshed is a ball of {:g} mm about ({:g}, {:g}, {:g}), the right Sylvian fissure: is the "
+        "--brain: {}. What is meshed is a ball of {:g} mm about ({:g}, {:g}, {:g}), {}: is the "
         "brain in the MNI frame (right-anterior-superior), in mm?{}",
-        e.what(), fissure_radius, fissure_centre.x(), fissure_centre.y(), fissure_centre.z(),
+        e.what(), approach.radius, approach.centre.x(), approach.centre.y(), approach.centre.z(), approach.title,
         o.mirror ? " It was mirrored (--mirror): was it of the left side?" : " One of the left side needs --mirror."));
   }
   json["notes"] = to_json(notes);

@@ -3,39 +3,34 @@
 // meshes/lobes. It must lie in their frame (MNI, mm). What the part of the scenes looks at is a ball about the fissure:
 // the rest is left out.
 #pragma once
-#include "tools/case_builder/case_folder.h"
+#include "tools/case_builder/approach.h"
 #include "tools/case_builder/place.h"
 #include "tools/case_builder/progress.h"
 #include "tools/mesh_lobes/part_fields.h"
 
 namespace insula::case_builder {
 
-/// Of the fissure that is meshed; nodes of the lobes farther than `held` are held (scenes/parts/fissure.xml).
-inline const Vec3 fissure_centre{54, 4, -2};
-inline constexpr double fissure_radius = 35, fissure_held = 32;  ///< mm
-
-inline constexpr const char* lobe_names[] = {"frontal", "temporal", "insula"};
-
 /// What was given, as labels.
 struct BrainLabels {
   mesh_tool::NiftiVolume volume;
-  std::vector<mesh_tool::Part> parts;  ///< in the order of lobe_names
+  std::vector<mesh_tool::Part> parts;  ///< in the order of Approach::parts
   bool own_fissure = true;             ///< false: its lobes are told apart by the shipped ones
 };
 /// Reads labels, one surface a lobe, or one closed surface that is shared out to the nearest shipped lobe. Throws
 /// InputError: what cannot be read, surfaces that are open, in pieces, or of a size that no lobe has, labels that do
 /// not exist, lobes that are missing.
-BrainLabels read_brain(const Options& options, const fs::path& project, std::vector<Note>& notes);
+BrainLabels read_brain(const Options& options, const fs::path& project, const Approach& approach,
+                       std::vector<Note>& notes);
 
 /// How far the stage may move a brain so that its fissure lies where the arms, the hands and the microscope stand: its
 /// field by so much, mm, and turned by so much, degrees. More than that is no matter of persons but of frames.
 inline constexpr double farthest_move = 12, widest_turn = 20;
 /// Lays the fissure of the brain, whose levels are `fields`, over the shipped one, and finds the levels again; the
 /// motion that was made. What is too far away stays where it is, with a note.
-Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const fs::path& project,
+Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const Approach& approach,
                     std::vector<Note>& notes);
 /// How the levels are found.
-mesh_tool::FieldOptions field_options();
+mesh_tool::FieldOptions field_options(const Approach& approach);
 /// The motion that the stage found for the brain, for vessels in its frame; the identity when it stayed where it was.
 Placement brain_motion(const CaseFolder& folder);
 

@@ -41,7 +41,7 @@ std::string make_case(const insula::test::SceneFolder& folder, const std::vector
 }
 
 TEST(FissureFit, UndoesAMotion) {
-  const Course wanted = shipped_course(find_project(INSULA_SOURCE_DIR));
+  const Course wanted = shipped_course(sylvian);
   ASSERT_GE(wanted.superficial.size(), 5u);
   EXPECT_NEAR(distance(wanted, wanted), 0, 1e-12);
   const Placement away{Eigen::AngleAxisd(0.15, Vec3(0.6, -0.48, 0.64)).toRotationMatrix(), Vec3(3, -4, 5)};
@@ -57,7 +57,7 @@ TEST(FissureFit, UndoesAMotion) {
 Standing settled(const CaseFolder& made) {
   Registry registry;
   register_builtin(registry);
-  const Assets assets = link_assets(made, find_project(INSULA_SOURCE_DIR), {});
+  const Assets assets = link_assets(made, find_project(INSULA_SOURCE_DIR), {}, sylvian);
   const auto loaded = load_simulation_text("<scene><include file=\"" + assets.parts +
                                                "/retracted_fissure.xml\"><variable name=\"lobes\" "
                                                "value=\"../../brain\"/></include><settle time=\"3 s\"/></scene>",
@@ -114,7 +114,7 @@ TEST_F(OwnBrain, RealLobesAreMeshedAndHeldOpen) {
   const fs::path anatomy = fs::path(INSULA_SOURCE_DIR) / "../shared/anatomy";
   if (!fs::exists(anatomy / "colin27_insula_R.stl")) GTEST_SKIP() << "no anatomy here";
   Options o;
-  for (const char* name : lobe_names)
+  for (const std::string& name : lobe_names)
     o.brain.push_back(std::string(name) + "=" + (anatomy / ("colin27_" + std::string(name) + "_R.stl")).string());
   const CaseFolder made{folder.path() / "made", "made"};
   Progress quiet;
@@ -142,9 +142,9 @@ TEST_F(OwnBrain, ThatStandsElsewhereIsTold) {
   EXPECT_GT(problems(judged(settled(made))), 0) << "left where it is, its fissure runs past the arms";
 
   folder.write("head.nii", test::head_text(Vec3(0, 8, -24)));
-  BrainLabels far = read_brain(o, project, notes);
-  mesh_tool::PartFields fields = build_part_fields(far.volume, nullptr, far.parts, field_options());
-  EXPECT_TRUE(settle_in(far, fields, project, notes).rotation.isIdentity(0));
+  BrainLabels far = read_brain(o, project, sylvian, notes);
+  mesh_tool::PartFields fields = build_part_fields(far.volume, nullptr, far.parts, field_options(sylvian));
+  EXPECT_TRUE(settle_in(far, fields, sylvian, notes).rotation.isIdentity(0));
   ASSERT_EQ(problems(notes), 1);
   EXPECT_NE(notes[0].advice.find("Bring the brain to the MNI frame"), std::string::npos);
 }
@@ -161,7 +161,7 @@ TEST_F(OwnBrain, LabelsOfAVolumeBecomeACaseWhoseExercisesRun) {
   ASSERT_FALSE(HasFailure());
   expect_meshes(made, 1000);
   // Moved to where the arms stand.
-  EXPECT_LT((brain_motion(made).apply(fissure_centre + off) - fissure_centre).norm(), 3);
+  EXPECT_LT((brain_motion(made).apply(sylvian.centre + off) - sylvian.centre).norm(), 3);
   for (const fs::path& file : exercise_files(made)) {
     const MeasuredScene m = measure_scene(file, 100);
     EXPECT_EQ(m.message, "") << file;

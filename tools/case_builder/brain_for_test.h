@@ -5,10 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "tools/case_builder/brain.h"
+#include "tools/case_builder/project.h"
 #include "tools/case_builder/shapes_for_test.h"
 #include "tools/case_builder/topology.h"
 
 namespace insula::case_builder {
+
+inline const Approach sylvian = read_approach(find_project(INSULA_SOURCE_DIR), "sylvian");
+inline const std::array<std::string, 3> lobe_names = sylvian.parts();
 
 /// A box in twelve triangles, outward.
 inline TriMesh box(const Vec3& low, const Vec3& high) {
@@ -37,7 +41,7 @@ class OwnBrain : public testing::Test {
   std::string path(const std::string& name) const { return (folder.path() / name).string(); }
   Options by_lobe() const {
     Options o;
-    for (const char* name : lobe_names) o.brain.push_back(std::string(name) + "=" + path(std::string(name) + ".stl"));
+    for (const std::string& name : lobe_names) o.brain.push_back(name + "=" + path(name + ".stl"));
     return o;
   }
   insula::test::SceneFolder folder;

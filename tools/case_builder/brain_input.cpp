@@ -27,8 +27,9 @@ namespace {
 
 constexpr double grid_spacing = 0.7;  // mm, of the labels that surfaces are turned into
 
-bool is_lobe(const std::string& name) {
-  return std::find(std::begin(lobe_names), std::end(lobe_names), name) != std::end(lobe_names);
+bool is_lobe(const Approach& approach, const std::string& name) {
+  const auto parts = approach.parts();
+  return std::find(parts.begin(), parts.end(), name) != parts.end();
 }
 
 /// "NAME=REST", or an empty name.
@@ -76,29 +77,30 @@ TriMesh read_lobe_surface(const fs::path& file, const std::string& what, const O
 }
 
 /// An empty volume of labels about the fissure, of a brain that stays in its place or may be moved.
-mesh_tool::NiftiVolume blank(mesh_tool::Grid& grid, bool in_place) {
+mesh_tool::NiftiVolume blank(mesh_tool::Grid& grid, const Approach& approach, bool in_place) {
   // Room for the move that may lay the fissure over the shipped one.
-  const double reach = fissure_radius + 3 + (in_place ? 0 : farthest_move);
+  const double reach = approach.radius + 3 + (in_place ? 0 : farthest_move);
   const int n = int(std::ceil(2 * reach / grid_spacing)) + 1;
   grid.size = {n, n, n}, grid.spacing = grid_spacing;
   mesh_tool::NiftiVolume v;
   v.size = grid.size;
   v.value.assign(grid.count(), 0.0f);
   for (std::size_t a = 0; a < 3; ++a) {
-    grid.origin[a] = fissure_centre[Eigen::Index(a)] - reach;
+    grid.origin[a] = approach.centre[Eigen::Index(a)] - reach;
     v.to_world[5 * a] = grid_spacing, v.from_world[5 * a] = 1 / grid_spacing;
     v.to_world[4 * a + 3] = grid.origin[a], v.from_world[4 * a + 3] = -grid.origin[a] / grid_spacing;
   }
   return v;
 }
 
-BrainLabels of_surfaces(const std::map<std::string, std::string>& files, const Options& o, std::vector<Note>& notes) {
+BrainLabels of_surfaces(const std::map<std::string, std::string>& files, const Options& o, const Approach& approach,
+                        std::vector<Note>& notes) {
   BrainLabels out;
   mesh_tool::Grid grid;
-  out.volume = blank(grid, o.brain_in_place);
+  out.volume = blank(grid, approach, o.brain_in_place);
   std::size_t twice = 0, all = 0;
   for (int k = 0; k < 3; ++k) {
-    const std::string name = lobe_names[k];
+    const std::string name = approach.parts()[std::size_t(k)];
     const auto at = files.find(name);
     if (at == files.end())
       throw InputError("--brain: there is no " + name +
@@ -120,21 +122,22 @@ BrainLabels of_surfaces(const std::map<std::string, std::string>& files, const O
   return out;
 }
 
-BrainLabels of_one_surface(const fs::path& file, const Options& o, const fs::path& project, std::vector<Note>& notes) {
+BrainLabels of_one_surface(const fs::path& file, const Options& o, const fs::path& project, const Approach& approach,
+                           std::vector<Note>& notes) {
   BrainLabels out;
   mesh_tool::Grid grid;
   out.own_fissure = false;
-  out.volume = blank(grid, true);
+  out.volume = blank(grid, approach, true);
   const mesh_tool::Mask inside = inside_of(read_lobe_surface(file, "brain", o, notes), grid);
-  const Fissure shipped = read_fissure(project, {});
-  const Vec3 reach = Vec3::Constant(fissure_radius + 4);
+  const Fissure shipped = read_fissure(project, {}, approach);
+  const Vec3 reach = Vec3::Constant(approach.radius + 4);
   std::vector<DistanceGrid> near;
   for (int k = 0; k < 3; ++k) {
-    const TriMesh* surface = &shipped.insula;
+    const TriMesh* surface = &shipped.floor;
     for (const Lobe& l : shipped.lobes)
-      if (l.name == lobe_names[k]) surface = &l.surface;
-    near.emplace_back(Solid(*surface), fissure_centre - reach, fissure_centre + reach, 2.0, 40.0);
-    out.parts.push_back({lobe_names[k], {k + 1}});
+      if (l.name == approach.parts()[std::size_t(k)]) surface = &l.surface;
+    near.emplace_back(Solid(*surface), approach.centre - reach, approach.centre + reach, 2.0, 40.0);
+    out.parts.push_back({approach.parts()[std::size_t(k)], {k + 1}});
   }
   const auto n0 = std::size_t(grid.size[0]), n1 = std::size_t(grid.size[1]);
   for (std::size_t i = 0; i < inside.size(); ++i) {
@@ -153,13 +156,13 @@ BrainLabels of_one_surface(const fs::path& file, const Options& o, const fs::pat
   return out;
 }
 
-BrainLabels of_volume(const fs::path& file, const Options& o) {
+BrainLabels of_volume(const fs::path& file, const Options& o, const Approach& approach) {
   BrainLabels out;
   std::map<std::string, std::vector<int>> labels;
   std::map<int, std::string> lobe_of;
   for (const std::string& text : o.lobe_labels) {
     const auto [name, list] = named(text);
-    if (!is_lobe(name))
+    if (!is_lobe(approach, name))
       throw InputError("--lobe: " + in_quotes(text) +
                        " names no lobe; write frontal=LABELS, temporal=LABELS, insula=LABELS");
     if (labels.contains(name)) throw InputError("--lobe: the " + name + " is given twice");
@@ -172,10 +175,9 @@ BrainLabels of_volume(const fs::path& file, const Options& o) {
       if (const auto [at, fresh] = lobe_of.emplace(k, name); !fresh && at->second != name)
         throw InputError(fmt::format("--lobe: the label {} is given to the {} and to the {}", k, at->second, name));
   }
-  for (const char* name : lobe_names)
+  for (const std::string& name : approach.parts())
     if (!labels.contains(name))
-      fail(file,
-           std::string("is a volume: say which labels are the ") + name + ", such as --lobe " + name + "=2,4,10-16");
+      fail(file, "is a volume: say which labels are the " + name + ", such as --lobe " + name + "=2,4,10-16");
 #ifdef INSULA_WITH_ITK
   out.volume = read_volume(file);
   if (o.mirror) mirror(out.volume);
@@ -189,12 +191,12 @@ BrainLabels of_volume(const fs::path& file, const Options& o) {
     if (there.insert(v).second && there.size() > 4000)
       fail(file, "has more than 4,000 values: it is no volume of labels");
   }
-  for (const char* name : lobe_names) {
+  for (const std::string& name : approach.parts()) {
     const std::vector<int>& list = labels[name];
     if (std::none_of(list.begin(), list.end(), [&](int k) { return there.contains(float(k)); })) {
       std::string known;
       for (const float v : there) known += (known.empty() ? "" : ", ") + std::to_string(int(v));
-      fail(file, std::string("none of the labels of the ") + name + " is there; there are: " + shown(known));
+      fail(file, "none of the labels of the " + name + " is there; there are: " + shown(known));
     }
     out.parts.push_back({name, list});
   }
@@ -203,22 +205,22 @@ BrainLabels of_volume(const fs::path& file, const Options& o) {
 
 }  // namespace
 
-BrainLabels read_brain(const Options& o, const fs::path& project, std::vector<Note>& notes) {
+BrainLabels read_brain(const Options& o, const fs::path& project, const Approach& approach, std::vector<Note>& notes) {
   std::map<std::string, std::string> files;
   for (const std::string& text : o.brain) {
     auto [name, file] = named(text);
-    if (!name.empty() && !is_lobe(name))
+    if (!name.empty() && !is_lobe(approach, name))
       throw InputError("--brain: " + in_quotes(name) + " is no lobe; frontal, temporal and insula are");
     if (!files.emplace(name, file).second)
       throw InputError(name.empty() ? "--brain takes one file, or NAME=FILE for each lobe"
                                     : "--brain: the " + name + " is given twice");
   }
-  if (!files.contains("")) return of_surfaces(files, o, notes);
+  if (!files.contains("")) return of_surfaces(files, o, approach, notes);
   if (files.size() > 1) throw InputError("--brain takes one file, or NAME=FILE for each lobe, not both");
   const fs::path file = files[""];
-  if (is_volume_input(file)) return of_volume(file, o);
+  if (is_volume_input(file)) return of_volume(file, o, approach);
   if (!o.lobe_labels.empty()) fail(file, "is a surface; --lobe is for volumes of labels");
-  return of_one_surface(file, o, project, notes);
+  return of_one_surface(file, o, project, approach, notes);
 }
 
 }  // namespace insula::case_builder

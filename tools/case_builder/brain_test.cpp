@@ -18,7 +18,7 @@ int lobe_at(const Vec3& p) { return p.x() < 40 ? 2 : p.z() > -2 ? 0 : 1; }
 std::string refusal(const Options& o) {
   std::vector<Note> notes;
   try {
-    read_brain(o, find_project(INSULA_SOURCE_DIR), notes);
+    read_brain(o, find_project(INSULA_SOURCE_DIR), sylvian, notes);
   } catch (const InputError& e) {
     return e.what();
   }
@@ -33,7 +33,7 @@ void expect_blocks(const BrainLabels& b, double layer) {
     for (double y = -25; y < 33; y += 7)
       for (double z = -30; z < 28; z += 3) {
         const Vec3 p(x, y, z);
-        if ((p - fissure_centre).norm() > 30 || std::abs(x - 40) < layer || (x > 40 && std::abs(z + 2) < layer))
+        if ((p - sylvian.centre).norm() > 30 || std::abs(x - 40) < layer || (x > 40 && std::abs(z + 2) < layer))
           continue;
         ++all;
         const int label = int(b.volume.nearest({x, y, z}));
@@ -61,7 +61,7 @@ TEST(WritePly, FirstByteThatIsALinesEndIsReadBack) {
 }
 
 TEST_F(OwnBrain, SurfacesBecomeLabels) {
-  expect_blocks(read_brain(by_lobe(), find_project(INSULA_SOURCE_DIR), notes), 1.0);
+  expect_blocks(read_brain(by_lobe(), find_project(INSULA_SOURCE_DIR), sylvian, notes), 1.0);
   EXPECT_TRUE(notes.empty());
 }
 
@@ -71,20 +71,19 @@ TEST_F(OwnBrain, OneSurfaceIsSharedOutToTheNearestShippedLobe) {
   Options o;
   o.brain = {path("brain.ply")};
   const fs::path project = find_project(INSULA_SOURCE_DIR);
-  const BrainLabels b = read_brain(o, project, notes);
-  const Fissure shipped = read_fissure(project, {});
+  const BrainLabels b = read_brain(o, project, sylvian, notes);
+  const Fissure shipped = read_fissure(project, {}, sylvian);
   // Well inside of a shipped lobe there is no doubt.
   for (std::size_t k = 0; k < 2; ++k) {
     int checked = 0;
     for (const Vec3& p : shipped.lobes[k].tets.nodes) {
-      if ((p - fissure_centre).norm() > 30) continue;
+      if ((p - sylvian.centre).norm() > 30) continue;
       double near = 1e9;
       for (const Vec3& q : shipped.lobes[1 - k].surface.vertices) near = std::min(near, (p - q).norm());
-      for (const Vec3& q : shipped.insula.vertices) near = std::min(near, (p - q).norm());
+      for (const Vec3& q : shipped.floor.vertices) near = std::min(near, (p - q).norm());
       if (near < 10) continue;
       ++checked;
-      const auto name =
-          std::find(std::begin(lobe_names), std::end(lobe_names), shipped.lobes[k].name) - std::begin(lobe_names);
+      const auto name = std::find(lobe_names.begin(), lobe_names.end(), shipped.lobes[k].name) - lobe_names.begin();
       EXPECT_EQ(int(b.volume.nearest({p.x(), p.y(), p.z()})), int(name) + 1) << p.transpose();
     }
     EXPECT_GT(checked, 5);
@@ -97,7 +96,7 @@ TEST_F(OwnBrain, WhatCannotBeIsRefusedWithWhatToDo) {
   const auto with = [&](int k, const TriMesh& m) {
     Options o = by_lobe();
     folder.write("other.stl", test::stl_text(m));
-    o.brain[std::size_t(k)] = std::string(lobe_names[k]) + "=" + path("other.stl");
+    o.brain[std::size_t(k)] = std::string(lobe_names[std::size_t(k)]) + "=" + path("other.stl");
     return refusal(o);
   };
   EXPECT_NE(with(0, test::scaled(block(0), 1e-3)).find("give --brain-unit m"), std::string::npos);
@@ -143,7 +142,7 @@ TEST_F(OwnBrain, LabelsAreChecked) {
   o.lobe_labels[2] = "frontal=30";
   EXPECT_NE(refusal(o).find("the frontal is given twice"), std::string::npos) << refusal(o);
   o.lobe_labels[2] = "insula=30";
-  const BrainLabels b = read_brain(o, find_project(INSULA_SOURCE_DIR), notes);
+  const BrainLabels b = read_brain(o, find_project(INSULA_SOURCE_DIR), sylvian, notes);
   EXPECT_EQ(b.parts[0].labels, (std::vector<int>{10, 11, 12}));
 }
 #endif
@@ -166,14 +165,14 @@ TEST_F(OwnBrain, BlocksAreMeshedWithinTheirNodes) {
   // The fine surfaces keep to the blocks, half the cleft of a millimetre off where these meet.
   for (int k = 0; k < 3; ++k) {
     double away = 0;
-    for (const Vec3& p : read_ply(made.brain() / (std::string(lobe_names[k]) + "_surface.ply")).vertices) {
-      if ((p - fissure_centre).norm() > 28) continue;
+    for (const Vec3& p : read_ply(made.brain() / (std::string(lobe_names[std::size_t(k)]) + "_surface.ply")).vertices) {
+      if ((p - sylvian.centre).norm() > 28) continue;
       const double to_floor = k == 2 ? 40 - p.x() : p.x() - 40, to_cleft = k == 0 ? p.z() + 2 : -2 - p.z();
       const double inside = k == 2 ? to_floor : std::min(to_floor, to_cleft);
       if (k == 2 || std::max(to_floor, to_cleft) > 4)
         away = std::max(away, std::abs(inside - 0.5));  // edges are rounded
     }
-    EXPECT_LT(away, 0.6) << lobe_names[k];
+    EXPECT_LT(away, 0.6) << lobe_names[std::size_t(k)];
   }
   EXPECT_TRUE(fs::exists(made.path / "brain.json"));
   // Without --brain the stage takes away what it made.
@@ -184,7 +183,8 @@ TEST_F(OwnBrain, BlocksAreMeshedWithinTheirNodes) {
 TEST_F(OwnBrain, ABrainElsewhereIsRefused) {
   Options o = by_lobe();
   for (int k = 0; k < 3; ++k)
-    folder.write(std::string(lobe_names[k]) + ".stl", test::stl_text(test::joined({}, block(k), Vec3(0, 300, 0))));
+    folder.write(std::string(lobe_names[std::size_t(k)]) + ".stl",
+                 test::stl_text(test::joined({}, block(k), Vec3(0, 300, 0))));
   Progress quiet;
   try {
     run_brain({folder.path() / "made", "made"}, find_project(INSULA_SOURCE_DIR), o, quiet);

@@ -27,6 +27,7 @@ std::vector<Note> notes_from_json(const Json& json);
 struct CaseFolder {
   fs::path path;
   std::string name;
+  std::string opening = "1_sylvian_fissure";  ///< file of the exercise that opens the fissure (approach.h)
 
   fs::path intake() const { return path / "intake"; }
   fs::path wall() const { return path / "wall"; }

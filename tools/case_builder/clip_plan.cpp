@@ -17,7 +17,7 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 constexpr double past = 1.5;       // mm that the tips go beyond the flattened neck
-constexpr double off_floor = 0.4;  // mm that they keep from the insula, half their own width included
+constexpr double off_floor = 0.4;  // mm that they keep from the floor, half their own width included
 
 Vec3 across(const Vec3& a, const Vec3& n) { return (a - a.dot(n) * n).normalized(); }
 
@@ -101,8 +101,9 @@ bool ClipPlan::too_short() const { return clip.blade < needed - past; }
 bool ClipPlan::kept_back() const { return drawn_back > past; }
 
 std::vector<ClipPlan> clip_plans(const artery::Vessel& v, const Solid& floor, const std::vector<ClipShape>& clips,
-                                 const Options& o) {
+                                 const Options& o, const Approach& approach) {
   const artery::Neck& neck = *v.neck;
+  const Vec3& to_surgeon = approach.to_surgeon;
   std::vector<ClipPlan> out;
   for (double turn = -60; turn <= 60; turn += 15) {
     const double angle = o.turn.value_or(turn);
@@ -117,7 +118,7 @@ std::vector<ClipPlan> clip_plans(const artery::Vessel& v, const Solid& floor, co
       const double back = o.slide ? 0 : way_back(floor, clip, middle, -outward);
       for (const bool mirrored : {false, true}) {
         ClipPlan plan;
-        plan.clip = clip, plan.needed = needed, plan.drawn_back = back;
+        plan.clip = clip, plan.to_surgeon = to_surgeon, plan.needed = needed, plan.drawn_back = back;
         plan.lay(neck, {lift, slide - back, angle, mirrored});
         plan.off_view = std::acos(std::clamp(plan.pose.shaft.dot(to_surgeon), -1.0, 1.0)) / degree;
         plan.cost = std::pow(plan.off_view / 12, 2) + std::pow(angle / 60, 2) +
@@ -156,7 +157,8 @@ std::vector<Note> notes_of(const ClipPlan& plan) {
   return notes;
 }
 
-ApplierPose plan_temporary(const artery::Vessel& v, const Solid& floor, const ClipShape& clip) {
+ApplierPose plan_temporary(const artery::Vessel& v, const Solid& floor, const ClipShape& clip,
+                           const Approach& approach) {
   const auto& c = v.centrelines.front().curve;
   std::size_t near = 0;
   for (std::size_t k = 0; k < c.size(); ++k)
@@ -164,8 +166,8 @@ ApplierPose plan_temporary(const artery::Vessel& v, const Solid& floor, const Cl
   std::size_t at = near;
   double distance = 0;
   while (at > 2 && distance < 0.5 * v.neck->diameter + 2) distance += (c.points[at] - c.points[at - 1]).norm(), --at;
-  const Vec3 along = c.tangent(at), square = across(to_surgeon, along);
-  const Vec3 outward = (0.4 * square + 0.6 * to_surgeon).normalized();
+  const Vec3 along = c.tangent(at), square = across(approach.to_surgeon, along);
+  const Vec3 outward = (0.4 * square + 0.6 * approach.to_surgeon).normalized();
   // Pressed flat the parent is half its perimeter wide; the tips go past its far edge where the floor lets them.
   const double tips = 0.5 * std::numbers::pi * c.radius[at] + past, slide = tips - 0.5 * clip.blade;
   const Vec3 middle = c.points[at] - slide * outward;

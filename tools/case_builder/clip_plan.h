@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tools/artery/vessel.h"
-#include "tools/case_builder/case_folder.h"
+#include "tools/case_builder/approach.h"
 #include "tools/case_builder/solid.h"
 
 namespace insula::case_builder {
@@ -43,6 +43,7 @@ struct BladePlacement {
 };
 struct ClipPlan {
   ClipShape clip;
+  Vec3 to_surgeon = Vec3::UnitZ();  ///< unit
   BladePlacement at;
   ApplierPose pose;
   double needed = 0;      ///< length that the flattened neck asks for, mm
@@ -56,14 +57,15 @@ struct ClipPlan {
   bool kept_back() const;  ///< the floor keeps the tips from the neck's far side
   bool leaves_remnant() const { return too_short() || kept_back(); }
 };
-/// The options' choices for a placed vessel's neck, best first. The tips keep off `floor` (the insula, which does not
+/// The options' choices for a placed vessel's neck, best first. The tips keep off `floor` (which does not
 /// give way: blades that run against it are lifted off the neck). Throws InputError when a wanted clip does not exist.
 std::vector<ClipPlan> clip_plans(const artery::Vessel& vessel, const Solid& floor, const std::vector<ClipShape>& clips,
-                                 const Options& options);
+                                 const Options& options, const Approach& approach);
 /// What is wrong with a plan.
 std::vector<Note> notes_of(const ClipPlan& plan);
 
 /// A temporary clip across the parent, before the neck; it keeps off the floor too.
-ApplierPose plan_temporary(const artery::Vessel& vessel, const Solid& floor, const ClipShape& clip);
+ApplierPose plan_temporary(const artery::Vessel& vessel, const Solid& floor, const ClipShape& clip,
+                           const Approach& approach);
 
 }  // namespace insula::case_builder

@@ -9,6 +9,7 @@
 #include "core/base/input_error.h"
 #include "core/sim/exercise.h"
 #include "engine/sharing/case_archive.h"
+#include "tools/case_builder/approach.h"
 #include "tools/case_builder/brain.h"
 #include "tools/case_builder/inspect.h"
 #include "tools/case_builder/intake.h"
@@ -162,6 +163,7 @@ void brain_options(CLI::App* app, Options& o) {
 }
 
 void place_options(CLI::App* app, Options& o) {
+  app->add_option("--approach", o.approach, "the way to the aneurysm: sylvian (default), interhemispheric");
   app->add_flag("--in-place", o.in_place, "the input lies in the frame of the lobes (MNI, mm) already");
   app->add_option("--lobes", o.lobes, "folder with lobes of your own, named as in meshes/lobes, in its frame (MNI, mm)")
       ->check(CLI::ExistingDirectory);
@@ -255,7 +257,7 @@ void do_stage(const std::string& stage, const CaseFolder& folder, const Line& li
   if (stage == "brain") run_brain(folder, project, o, progress);
   if (stage == "place") run_place(folder, project, o, progress);
   if (stage == "scenes") run_scenes(folder, project, o, progress);
-  if (stage == "report") run_report(folder, o, progress);
+  if (stage == "report") run_report(folder, project, o, progress);
 }
 
 }  // namespace
@@ -289,6 +291,7 @@ int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::
       parse(arguments, again, o, out, err);
     }
     const fs::path project = find_project(folder.path);
+    folder.opening = read_approach(project, o.approach).opening.file;
     const auto first =
         line.stage.empty() ? std::begin(stages) : std::find(std::begin(stages), std::end(stages), line.stage);
     // A new case's folder is there from the first stage that worked.

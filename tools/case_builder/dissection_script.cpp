@@ -27,8 +27,7 @@ constexpr Pace pace{.stroke = 0.12,
                     .until_severed = true};
 
 void write_exercises(const SceneFacts& f, const CaseFolder& folder) {
-  const std::vector<fs::path> files = exercise_files(folder);
-  for (std::size_t k = 0; k < files.size(); ++k) write_text(files[k], exercise(f, int(k + 1)));
+  for (int k = folder.opening.empty() ? 2 : 1; k <= 4; ++k) write_text(exercise_file(folder, k), exercise(f, k));
 }
 
 /// Leaves out a kind of strand for which there is no place. False: that was not what is wrong.
@@ -78,7 +77,7 @@ class StrandChoice {
   bool load(LoadedExercise& to) {
     write_exercises(f_, folder_);
     to.surgeon.reset();
-    to.loaded = load_simulation(exercise_files(folder_)[1], registry_, 1);
+    to.loaded = load_simulation(exercise_file(folder_, 2), registry_, 1);
     if (to.loaded.simulation) {
       to.surgeon = std::make_unique<Surgeon>(*to.loaded.simulation);
       return true;
@@ -136,7 +135,7 @@ void spin_strands(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::v
   const fs::path motion = folder.path / "2_aneurysm_dissection_steady.csv";
   std::error_code ignored;
   fs::remove(motion, ignored);
-  f.strand_sets = {"frontal", "temporal", "branches"};
+  f.strand_sets = {f.approach.lobes[0], f.approach.lobes[1], "branches"};
   f.rehearsed = false;
   const LoadedExercise exercise = StrandChoice(f, folder, registry, notes).choose();
   if (!rehearse) return;

@@ -2,13 +2,14 @@
 // Reads the part through the loader of scenes, so that the builder sees what the exercises will see.
 #include "tools/case_builder/fissure.h"
 
+#include <fmt/format.h>
+
 #include "core/base/input_error.h"
 #include "core/mechanics/instrument.h"
 #include "core/mechanics/soft_body.h"
 #include "core/mechanics/surface.h"
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
-#include "tools/case_builder/brain.h"
 
 namespace insula::case_builder {
 namespace {
@@ -19,18 +20,21 @@ TriMesh in_mm(TriMesh m) {
 }
 
 /// A lobe of the author's own. What the part of the scenes holds of it is held here.
-Lobe given_lobe(const std::filesystem::path& folder, const std::string& name) {
+Lobe given_lobe(const std::filesystem::path& folder, const std::string& name, const Approach& approach) {
   const std::filesystem::path file = folder / (name + ".msh");
   Lobe lobe;
   lobe.name = name;
   lobe.tets = read_tet_mesh(file, 1.0);
   lobe.surface = read_surface(folder / (name + "_surface.ply"), 1.0);
   int fixed = 0;
-  for (const Vec3& p : lobe.tets.nodes) fixed += lobe.fixed.emplace_back((p - fissure_centre).norm() > fissure_held);
+  for (const Vec3& p : lobe.tets.nodes) fixed += lobe.fixed.emplace_back((p - approach.centre).norm() > approach.held);
   if (fixed < 3)
-    throw InputError(file.string() +
-                     ": fewer than three of its nodes lie farther than 32 mm from (54, 4, -2), where lobes are held: "
-                     "is it in the frame of meshes/lobes, in mm?");
+    throw InputError(
+        fmt::format("{}: fewer than three of its nodes lie farther than {:g} mm from ({:g}, {:g}, {:g}), where lobes "
+                    "are held: is it "
+                    "in the frame of {}, in mm?",
+                    file.string(), approach.held, approach.centre.x(), approach.centre.y(), approach.centre.z(),
+                    "meshes/" + approach.folder.filename().string()));
   const Embedding e = embed(lobe.tets, lobe.surface.vertices);
   if (e.outside_m > 5) throw InputError(file.string() + ": its surface reaches more than 5 mm outside of it");
   for (std::size_t v = 0; v < lobe.surface.vertices.size(); ++v)
@@ -40,15 +44,18 @@ Lobe given_lobe(const std::filesystem::path& folder, const std::string& name) {
 
 }  // namespace
 
-Fissure read_fissure(const std::filesystem::path& project, const std::filesystem::path& lobes) {
+Fissure read_fissure(const std::filesystem::path& project, const std::filesystem::path& lobes,
+                     const Approach& approach) {
   Registry registry;
   register_builtin(registry);
-  const auto loaded = load_simulation_text(R"(<scene><include file="../parts/retracted_fissure.xml"/></scene>)",
-                                           project / "scenes/cases/placing.xml", registry, 1);
+  const auto loaded =
+      load_simulation_text(fmt::format(R"(<scene><include file="../parts/{}"/></scene>)", approach.open_part),
+                           project / "scenes/cases/placing.xml", registry, 1);
   if (!loaded.simulation) throw InputError("the fissure cannot be read:\n" + loaded.diagnostics.format());
   Fissure out;
+  out.approach = approach;
   for (Surface* s : loaded.simulation->surfaces()) {
-    if (s->body().id == "insula") out.insula = in_mm(s->rest());
+    if (s->body().id == approach.floor) out.floor = in_mm(s->rest());
     const auto* soft = dynamic_cast<const SoftBody*>(&s->body());
     if (!soft) continue;
     Lobe lobe;
@@ -69,11 +76,11 @@ Fissure read_fissure(const std::filesystem::path& project, const std::filesystem
         out.retractors.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }
   if (!lobes.empty()) {
-    out.insula = read_surface(lobes / "insula_surface.ply", 1.0);
-    for (Lobe& lobe : out.lobes) lobe = given_lobe(lobes, lobe.name);
+    out.floor = read_surface(lobes / (approach.floor + "_surface.ply"), 1.0);
+    for (Lobe& lobe : out.lobes) lobe = given_lobe(lobes, lobe.name, approach);
   }
-  if (out.lobes.size() != 2 || out.insula.triangles.empty() || out.retractors.triangles.empty())
-    throw InputError("the part of the fissure lacks a lobe, the insula or a retractor");
+  if (out.lobes.size() != 2 || out.floor.triangles.empty() || out.retractors.triangles.empty())
+    throw InputError("the part " + approach.open_part + " lacks a lobe, the " + approach.floor + " or a retractor");
   return out;
 }
 

@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "core/model/mesh.h"
+#include "tools/case_builder/approach.h"
 
 namespace insula::case_builder {
 
 /// A lobe at rest, mm.
 struct Lobe {
-  std::string name;  ///< frontal, temporal
+  std::string name;  ///< as the approach calls it
   TetMesh tets;
   std::vector<char> fixed;  ///< nodes at the cut face of the ball
   TriMesh surface;
@@ -26,13 +27,15 @@ struct Lobe {
 };
 
 struct Fissure {
+  Approach approach;
   std::vector<Lobe> lobes;
-  TriMesh insula;
+  TriMesh floor;       ///< rigid
   TriMesh retractors;  ///< as they stand at home
 };
 
-/// `lobes`: a folder with frontal.msh, frontal_surface.ply, temporal..., insula_surface.ply in the frame of
-/// meshes/lobes, mm; empty: those. Throws InputError.
-Fissure read_fissure(const std::filesystem::path& project, const std::filesystem::path& lobes);
+/// `lobes`: a folder with NAME.msh and NAME_surface.ply of the approach's lobes, and its floor's surface, in the frame
+/// of its meshes, mm; empty: those. Throws InputError.
+Fissure read_fissure(const std::filesystem::path& project, const std::filesystem::path& lobes,
+                     const Approach& approach);
 
 }  // namespace insula::case_builder

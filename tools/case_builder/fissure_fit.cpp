@@ -47,8 +47,10 @@ Course course_of(const mesh_tool::Cleft& cleft) {
   return c;
 }
 
-Course shipped_course(const fs::path& project) {
-  const fs::path file = project / "meshes/lobes/fissure.json";
+fs::path course_file(const Approach& approach) { return approach.folder / "fissure.json"; }
+
+Course shipped_course(const Approach& approach) {
+  const fs::path file = course_file(approach);
   Course c;
   const Json json = read_json(file);
   for (const Json& s : json.at("stations")) {

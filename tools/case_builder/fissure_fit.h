@@ -16,7 +16,9 @@ struct Course {
 Course course_of(const mesh_tool::Cleft& cleft);
 /// Of the shipped lobes (meshes/lobes/fissure.json), as far as it matters: within 16 mm of the middle of what the
 /// exercises open.
-Course shipped_course(const fs::path& project);
+Course shipped_course(const Approach& approach);
+/// Where that stands among the approach's meshes. Not every approach has one.
+fs::path course_file(const Approach& approach);
 
 /// How far the points of `wanted` are from the lines of `course`, root mean square, mm.
 double distance(const Course& wanted, const Course& course);

@@ -120,7 +120,8 @@ TEST_F(OwnBrain, OfTheLeftSideBecomesThatOfItsRightSidedTwin) {
   for (const char* side : {"right", "left"}) {
     const bool is_left = side[0] == 'l';
     for (int k = 0; k < 3; ++k)
-      folder.write(std::string(lobe_names[k]) + ".stl", test::stl_text(is_left ? left_of(block(k)) : block(k)));
+      folder.write(std::string(lobe_names[std::size_t(k)]) + ".stl",
+                   test::stl_text(is_left ? left_of(block(k)) : block(k)));
     Options o = by_lobe();
     o.mirror = is_left, o.brain_nodes = 450, o.brain_in_place = true;
     Progress quiet;

@@ -24,7 +24,7 @@ std::string complaint(const fs::path& scene, Progress& progress) {
 }  // namespace
 
 void try_opening(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::vector<Note>& notes, Progress& progress) {
-  const fs::path scene = exercise_files(folder)[0];
+  const fs::path scene = exercise_file(folder, 1);
   const auto write = [&](bool hands) {
     f.opened = hands;
     write_text(scene, exercise(f, 1));
@@ -41,7 +41,7 @@ void try_opening(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::ve
     write(false);
   }
   std::error_code ignored;
-  fs::remove(folder.path / "1_sylvian_fissure_steady.csv", ignored);
+  fs::remove(folder.path / (f.approach.opening.file + "_steady.csv"), ignored);
 }
 
 }  // namespace insula::case_builder

@@ -47,6 +47,7 @@ Json to_json(const Options& o) {
     j["brain_in_place"] = o.brain_in_place;
     j["brain_nodes"] = o.brain_nodes;
   }
+  if (o.approach != Options().approach) j["approach"] = o.approach;
   j["in_place"] = o.in_place;
   j["gap"] = o.gap;
   j["spin"] = o.spin;
@@ -88,6 +89,7 @@ Options options_from_json(const Json& j) {
     take(j, "brain_unit_mm", o.brain_unit_mm);
     take(j, "brain_in_place", o.brain_in_place);
     take(j, "brain_nodes", o.brain_nodes);
+    take(j, "approach", o.approach);
     take(j, "in_place", o.in_place);
     take(j, "gap", o.gap);
     take(j, "spin", o.spin);

@@ -44,8 +44,9 @@ struct Options {
   bool brain_in_place = false;           ///< it is not moved to where the arms and the microscope stand
   int brain_nodes = 1000;                ///< of both lobes together, at most
   // place
-  bool in_place = false;  ///< the input lies in the frame of the lobes already
-  double gap = 0.4;       ///< between the wall and the lobes
+  std::string approach = "sylvian";  ///< the way to the aneurysm, of meshes/*/approach.json
+  bool in_place = false;             ///< the input lies in the frame of the lobes already
+  double gap = 0.4;                  ///< between the wall and the lobes
   double spin = 0;  ///< turns the vessel about the sac's axis, degrees, after which the place is looked for nearby
   bool keep_spin = false;  ///< no other spin is tried
   std::string lobes;       ///< folder with lobes as those of meshes/lobes; empty: those

@@ -229,12 +229,12 @@ double lower_floor(Solid& floor, const Solid& wall, double gap) {
   return most;
 }
 
-/// Lowers the insula where the wall needs clearance.
-Room clear_floor(Solid& floor, TriMesh& insula, const Solid& wall, double gap) {
-  Room out{"insula", room(floor, wall) - wall_half, 0, 0};
+/// Lowers the floor where the wall needs clearance.
+Room clear_floor(Solid& floor, Fissure& fissure, const Solid& wall, double gap) {
+  Room out{fissure.approach.floor, room(floor, wall) - wall_half, 0, 0};
   if (out.before < gap) {
     out.moved = lower_floor(floor, wall, gap + wall_half);
-    insula = floor.mesh();
+    fissure.floor = floor.mesh();
   }
   out.after = room(floor, wall) - wall_half;
   return out;
@@ -334,8 +334,8 @@ bool is_clear(const std::vector<Room>& rooms) {
 std::vector<Room> part_lobes(Fissure& fissure, const TriMesh& wall_mesh, double gap, std::vector<Note>& notes,
                              Progress& progress) {
   const Solid wall(wall_mesh);
-  Solid floor(fissure.insula);
-  const Room floor_room = clear_floor(floor, fissure.insula, wall, gap);
+  Solid floor(fissure.floor);
+  const Room floor_room = clear_floor(floor, fissure, wall, gap);
   PartedLobes lobes(fissure, wall, floor, gap + wall_half);
   if (lobes.rooms[0].before < gap || lobes.rooms[1].before < gap || floor_room.moved > 0) lobes.part(progress);
   lobes.judge(notes);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/base/input_error.h"
+#include "tools/case_builder/approach.h"
 #include "tools/case_builder/brain.h"
 #include "tools/case_builder/clip_plan.h"
 #include "tools/case_builder/wall.h"
@@ -47,7 +48,7 @@ Fitted fitted(const artery::Vessel& v, const Fissure& fissure, const Placement& 
               const Options& o, Progress& progress) {
   Fitted out{p, placed(v, p), fissure, {}, {}, {}};
   out.rooms = part_lobes(out.fissure, out.vessel.wall.mesh, o.gap, out.notes, progress);
-  out.plan = clip_plans(out.vessel, Solid(out.fissure.insula), clips, o).front();
+  out.plan = clip_plans(out.vessel, Solid(out.fissure.floor), clips, o, fissure.approach).front();
   return out;
 }
 
@@ -57,7 +58,8 @@ void run_place(const CaseFolder& folder, const fs::path& project, const Options&
   progress.stage("place", 5);
   progress.step("reading the fissure");
   const artery::Vessel v = read_wall(folder.wall());
-  const Fissure fissure = read_fissure(project, o.brain.empty() ? fs::path(o.lobes) : folder.brain());
+  const Approach approach = read_approach(project, o.approach);
+  const Fissure fissure = read_fissure(project, o.brain.empty() ? fs::path(o.lobes) : folder.brain(), approach);
   // A vessel that lies in the frame of the author's own brain goes where that went.
   const std::vector<Placement> all = o.in_place && !o.brain.empty() ? std::vector<Placement>{brain_motion(folder)}
                                                                     : find_placements(v, fissure, o, progress);
@@ -75,7 +77,8 @@ void run_place(const CaseFolder& folder, const fs::path& project, const Options&
   progress.step("writing");
   artery::write_vessel(best.vessel, folder.artery());
   for (const Lobe& lobe : best.fissure.lobes) write_lobe(folder.lobes(), lobe);
-  write_ply(folder.lobes() / "insula_surface.ply", best.fissure.insula, "unit mm; the floor of the fissure");
+  write_ply(folder.lobes() / (approach.floor + "_surface.ply"), best.fissure.floor,
+            "unit mm; the floor of the fissure");
   Json json;
   json["rotation"] = Json::array();
   for (int r = 0; r < 3; ++r)

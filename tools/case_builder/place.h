@@ -18,14 +18,8 @@ struct Placement {
   Vec3 apply(const Vec3& p) const { return rotation * p + shift; }
 };
 
-/// Where the shipped aneurysms have their neck, which way their sacs point, and from where the surgeon looks (mm, MNI).
-inline const Vec3 place_of_neck{48.3, 15.4, -8.7};
-inline const Vec3 way_of_sac = Vec3(0.745, -0.030, 0.667).normalized();
-inline const Vec3 way_of_parent = Vec3(0.72, 0.15, 0.67).normalized();
-inline const Vec3 to_surgeon = Vec3(0.93, 0.25, 0.27).normalized();
-
-/// Placements near the shipped one, turned differently about the sac's axis, that with the least overlap first. Each is
-/// found on a fixed grid of turns and shifts and then refined. One alone where the turn or the place is given.
+/// Placements near that of the approach, turned differently about the sac's axis, that with the least overlap first.
+/// Each is found on a fixed grid of turns and shifts and then refined. One alone where the turn or the place is given.
 std::vector<Placement> find_placements(const artery::Vessel& vessel, const Fissure& fissure, const Options& options,
                                        Progress& progress);
 
@@ -44,7 +38,7 @@ bool is_clear(const std::vector<Room>& rooms);
 /// Whether the lobes still are meshes: no element turned inside out, no node moved out of the fissure.
 bool is_sound(const std::vector<Room>& rooms);
 
-/// Parts the lobes elastically (and draws the insula back) until each is `gap` from the wall, each other no nearer than
+/// Parts the lobes elastically (and draws the floor back) until each is `gap` from the wall, each other no nearer than
 /// they were.
 std::vector<Room> part_lobes(Fissure& fissure, const TriMesh& wall, double gap, std::vector<Note>& notes,
                              Progress& progress);

@@ -36,7 +36,7 @@ struct Turn {
 };
 
 /// Rotation of the frame of the neck's normal and the parent's direction at the neck onto that of the shipped case.
-Mat3 base_rotation(const artery::Vessel& v) {
+Mat3 base_rotation(const artery::Vessel& v, const Approach& a) {
   const auto& parent = v.centrelines.front().curve;
   std::size_t near = 0;
   for (std::size_t k = 0; k < parent.size(); ++k)
@@ -44,7 +44,7 @@ Mat3 base_rotation(const artery::Vessel& v) {
   const std::size_t back = near > parent.size() / 3 ? near - parent.size() / 3 : 0;
   const Vec3 arrives =
       near > back ? Vec3((parent.points[near] - parent.points[back]).normalized()) : parent.tangent(near);
-  return frame(way_of_sac, way_of_parent) * frame(v.neck->normal, arrives).transpose();
+  return frame(a.sac_points, a.parent_arrives) * frame(v.neck->normal, arrives).transpose();
 }
 
 /// Cost of a placement of the vessel in the fissure.
@@ -53,39 +53,41 @@ class PlacementCost {
   const double wanted_spin;  ///< rad
   PlacementCost(const artery::Vessel& v, const Fissure& fissure, const Options& o)
       : wanted_spin(o.spin * std::numbers::pi / 180),
-        base_(base_rotation(v)),
+        approach_(fissure.approach),
+        base_(base_rotation(v, fissure.approach)),
         normal_(v.neck->normal),
         behind_neck_(0.25 * std::numbers::pi * v.neck->diameter + past_neck),
         o_(o) {
-    const Vec3 low = place_of_neck - Vec3::Constant(reach + 4), high = place_of_neck + Vec3::Constant(reach + 4);
+    const Vec3 low = approach_.neck - Vec3::Constant(reach + 4), high = approach_.neck + Vec3::Constant(reach + 4);
     const auto add = [&](const TriMesh& mesh, double weight) {
       obstacles_.push_back({DistanceGrid(Solid(mesh), low, high, 0.8, limit), weight});
     };
     for (const Lobe& lobe : fissure.lobes) add(lobe.surface, 1);
-    add(fissure.insula, 6);
+    add(fissure.floor, 6);
     add(fissure.retractors, 6);
     const auto& all = v.wall.mesh.vertices;
     for (std::size_t i = 0; i < all.size(); i += std::max<std::size_t>(1, all.size() / 350))
       samples_.push_back(all[i] - v.neck->centre);
   }
   Mat3 rotation(const Turn& t) const {
-    const Vec3 u = way_of_sac.unitOrthogonal(), w = way_of_sac.cross(u);
-    return turn(t.tilt_a, u) * turn(t.tilt_b, w) * turn(t.spin, way_of_sac) * base_;
+    const Vec3 &axis = approach_.sac_points, u = axis.unitOrthogonal(), w = axis.cross(u);
+    return turn(t.tilt_a, u) * turn(t.tilt_b, w) * turn(t.spin, axis) * base_;
   }
   double operator()(const Turn& t) const {
     const Mat3 r = rotation(t);
     double sum = 0;
     for (const Vec3& s : samples_) {
-      const Vec3 p = r * s + place_of_neck + t.shift;
+      const Vec3 p = r * s + approach_.neck + t.shift;
       for (const Obstacle& ob : obstacles_)
         if (const double in = o_.gap + wall_half - ob.grid.at(p); in > 0) sum += ob.weight * in * in;
     }
-    // Blades across the neck need room for their tips before the insula, which does not give way.
-    const Vec3 normal = r * normal_, back = -(to_surgeon - to_surgeon.dot(normal) * normal).normalized();
+    // Blades across the neck need room for their tips before the floor, which does not give way.
+    const Vec3 normal = r * normal_, &view = approach_.to_surgeon,
+               back = -(view - view.dot(normal) * normal).normalized();
     double behind = 0;
     for (const double share : {0.6, 0.8, 1.0}) {
-      const Vec3 p = place_of_neck + t.shift + share * behind_neck_ * back;
-      behind += std::pow(std::max(0.0, room_of_tips - obstacles_[insula].grid.at(p)), 2);
+      const Vec3 p = approach_.neck + t.shift + share * behind_neck_ * back;
+      behind += std::pow(std::max(0.0, room_of_tips - obstacles_[floor].grid.at(p)), 2);
     }
     sum += behind_costs * double(samples_.size()) * behind;
     const double away = std::remainder(t.spin - wanted_spin, 2 * std::numbers::pi);
@@ -98,7 +100,8 @@ class PlacementCost {
     DistanceGrid grid;
     double weight;
   };
-  static constexpr std::size_t insula = 2;  // of the obstacles
+  static constexpr std::size_t floor = 2;  // of the obstacles
+  const Approach& approach_;
   Mat3 base_;
   Vec3 normal_;         ///< of the neck, in the vessel's frame
   double behind_neck_;  ///< from its middle to the tips of blades that close it, mm
@@ -179,7 +182,7 @@ std::vector<Placement> find_placements(const artery::Vessel& v, const Fissure& f
   for (const BestTurn& t : starts) {
     Placement& p = out.emplace_back();
     p.rotation = cost.rotation(t.turn);
-    p.shift = place_of_neck + t.turn.shift - p.rotation * v.neck->centre;
+    p.shift = fissure.approach.neck + t.turn.shift - p.rotation * v.neck->centre;
   }
   return out;
 }

@@ -46,7 +46,7 @@ struct Picture {
   std::string file, caption, svg;
 };
 
-std::vector<Picture> pictures(const artery::Vessel& v, const CaseFolder& folder) {
+std::vector<Picture> pictures(const artery::Vessel& v, const CaseFolder& folder, const Approach& approach) {
   Vec3 centre;
   const double radius = extent(v.wall.mesh, centre);
   const artery::Neck& neck = *v.neck;
@@ -56,14 +56,13 @@ std::vector<Picture> pictures(const artery::Vessel& v, const CaseFolder& folder)
     return svg_picture({drawn_regions(v), plane}, from, neck.normal, centre, radius, 330);
   };
   std::vector<Drawn> field{drawn_regions(v)};
-  for (const auto& [name, colour] : {std::pair("frontal", std::array<int, 3>{214, 160, 150}),
-                                     std::pair("temporal", std::array<int, 3>{200, 140, 140}),
-                                     std::pair("insula", std::array<int, 3>{170, 120, 120})})
-    field.push_back({read_ply(folder.lobes() / (std::string(name) + "_surface.ply")), {colour}, 0.5, false});
+  constexpr std::array<int, 3> colours[] = {{214, 160, 150}, {200, 140, 140}, {170, 120, 120}};
+  for (std::size_t k = 0; k < 3; ++k)
+    field.push_back({read_ply(folder.lobes() / (approach.parts()[k] + "_surface.ply")), {colours[k]}, 0.5, false});
   return {{"report_side.svg", "regions and the neck's plane, from the side", of_wall(side)},
           {"report_front.svg", "turned by 90 degrees", of_wall(neck.normal.cross(side))},
           {"report_fissure.svg", "in the fissure, from the surgeon's side (lobes half transparent)",
-           svg_picture(field, to_surgeon, Vec3(0, 0, 1), neck.centre, 18, 330)}};
+           svg_picture(field, approach.to_surgeon, Vec3(0, 0, 1), neck.centre, 18, 330)}};
 }
 
 std::string row_of(const std::vector<Picture>& all) {
@@ -128,7 +127,7 @@ Json for_programs(const artery::Vessel& v, const Json& wall, const Json& place, 
 
 }  // namespace
 
-void run_report(const CaseFolder& folder, const Options& options, Progress& progress) {
+void run_report(const CaseFolder& folder, const fs::path& project, const Options& options, Progress& progress) {
   progress.stage("report", 7);
   progress.step("reading the case");
   const Intake in = read_intake(folder);
@@ -142,12 +141,12 @@ void run_report(const CaseFolder& folder, const Options& options, Progress& prog
     exercises.push_back(measure_scene(file, 60));
   }
   progress.step("playing the clipping");
-  const MeasuredMotion clipping = measure_motion(exercise_files(folder)[2], 12);
+  const MeasuredMotion clipping = measure_motion(exercise_file(folder, 3), 12);
   std::vector<FindingSection> sections{input_findings(in, options), wall_findings(v, wall)};
   if (fs::exists(folder.path / "brain.json")) sections.push_back(brain_findings(read_json(folder.path / "brain.json")));
   sections.push_back(fissure_findings(place));
   sections.push_back(exercise_findings(scenes, exercises, clipping));
-  const std::vector<Picture> drawn = pictures(v, folder);
+  const std::vector<Picture> drawn = pictures(v, folder, read_approach(project, options.approach));
   for (const Picture& p : drawn) write_text(folder.path / p.file, p.svg);
   std::string html = head_of(folder) + row_of(drawn);
   for (const FindingSection& s : sections) html += table_of(s);

@@ -9,6 +9,6 @@ namespace insula::case_builder {
 
 /// Reads what all stages have written, runs the exercises, writes both reports; of the options it tells whether the
 /// input was mirrored.
-void run_report(const CaseFolder& folder, const Options& options, Progress& progress);
+void run_report(const CaseFolder& folder, const fs::path& project, const Options& options, Progress& progress);
 
 }  // namespace insula::case_builder

@@ -7,7 +7,6 @@
 
 #include "core/model/formats/file_bytes.h"
 #include "tools/case_builder/motion_script.h"
-#include "tools/case_builder/place.h"
 #include "tools/case_builder/rehearsal.h"
 #include "tools/case_builder/scenes.h"
 
@@ -17,16 +16,17 @@ namespace {
 // Of the blades above the neck's plane, in diameters of the neck; the first one is taken without a rehearsal.
 constexpr double heights[] = {0.3, 0.0, 0.2, 0.4};
 
-std::string rupture_motion(const ClipPlan& plan, const ApplierPose& temporary, const std::string& temporary_clip,
+std::string rupture_motion(const ClipPlan& plan, const ApplierPose& temporary, const SceneFacts& facts,
                            const artery::Neck& neck, double height) {
+  const Approach& approach = facts.approach;
   ApplierPose permanent = plan.pose;
   permanent.tip += height * neck.diameter * neck.normal;
   MotionScript m;
   m.command(1, "bleeding rupture");
-  m.command(0.1, "applier load " + temporary_clip);
+  m.command(0.1, "applier load " + facts.temporary);
   m.place_clip(temporary, 9, 2.0);
   ApplierPose away = drawn_back(temporary, out_of_field);
-  away.tip += 30 * to_surgeon;
+  away.tip += 30 * approach.to_surgeon;
   m.key(true, 0.8, away);
   m.command(std::round((m.time(true) + 0.2) * 1000) / 1000, "applier load " + plan.clip.name);
   m.key(true, 0.5, away);
@@ -34,9 +34,10 @@ std::string rupture_motion(const ClipPlan& plan, const ApplierPose& temporary, c
   m.take_clip(temporary);
   m.key(true, 8, drawn_back(temporary, out_of_field));
   // The suction tube, dipped into the field beside the neck.
-  const Vec3 shaft = Vec3(0.85, -0.35, 0.39).normalized(),
-             flat = (Vec3(0, -0.5, 0.87) - Vec3(0, -0.5, 0.87).dot(shaft) * shaft).normalized();
-  const ApplierPose low{neck.centre + Vec3(0, -7, 0) + 6 * shaft, flat, shaft}, outside = drawn_back(low, 26);
+  const Vec3 &shaft = approach.suction_shaft,
+             flat = (approach.suction_flat - approach.suction_flat.dot(shaft) * shaft).normalized();
+  const ApplierPose low{neck.centre + approach.suction_beside_neck + 6 * shaft, flat, shaft},
+      outside = drawn_back(low, 26);
   m.key(false, 0.01, outside);
   m.key(false, 1.5, outside);
   m.key(false, 2, low, true);
@@ -79,11 +80,10 @@ Outcome outcome(const fs::path& scene, double share_from, Progress& progress) {
 }  // namespace
 
 void script_rupture(const CaseFolder& folder, const artery::Vessel& vessel, const ClipPlan& plan,
-                    const ApplierPose& temporary, const std::string& temporary_clip, bool rehearse,
-                    std::vector<Note>& notes, Progress& progress) {
+                    const ApplierPose& temporary, const SceneFacts& facts, bool rehearse, std::vector<Note>& notes,
+                    Progress& progress) {
   const auto write = [&](double height) {
-    write_text(folder.path / "4_rupture_steady.csv",
-               rupture_motion(plan, temporary, temporary_clip, *vessel.neck, height));
+    write_text(folder.path / "4_rupture_steady.csv", rupture_motion(plan, temporary, facts, *vessel.neck, height));
   };
   if (!rehearse || plan.leaves_remnant()) return write(heights[0]);
   progress.step("rehearsing the rupture");
@@ -91,7 +91,7 @@ void script_rupture(const CaseFolder& folder, const artery::Vessel& vessel, cons
   Outcome best;
   for (const double height : heights) {
     write(height);
-    const Outcome now = outcome(exercise_files(folder)[3], played / double(std::size(heights)), progress);
+    const Outcome now = outcome(exercise_file(folder, 4), played / double(std::size(heights)), progress);
     if (played++ == 0 || now.sound || now.flaws < best.flaws) best = now, best_height = height;
     if (now.sound) break;
   }

@@ -3,6 +3,7 @@
 #pragma once
 #include "tools/case_builder/clip_plan.h"
 #include "tools/case_builder/progress.h"
+#include "tools/case_builder/scene_text.h"
 
 namespace insula::case_builder {
 
@@ -10,7 +11,7 @@ namespace insula::case_builder {
 /// where they do on a full one. With `rehearse`, several heights above the neck are played and the best one is kept;
 /// a note says what is wrong even then. A plan that leaves a remnant is not rehearsed.
 void script_rupture(const CaseFolder& folder, const artery::Vessel& vessel, const ClipPlan& plan,
-                    const ApplierPose& temporary, const std::string& temporary_clip, bool rehearse,
-                    std::vector<Note>& notes, Progress& progress);
+                    const ApplierPose& temporary, const SceneFacts& facts, bool rehearse, std::vector<Note>& notes,
+                    Progress& progress);
 
 }  // namespace insula::case_builder

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "core/base/text.h"
-#include "tools/case_builder/place.h"
 
 namespace insula::case_builder {
 namespace {
@@ -23,31 +22,49 @@ constexpr const char* head = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 constexpr const char* training_only = "For training only, never for the care of patients.";
 
 /// The fissure held open, with the case's own lobes.
-std::string fissure(const SceneFacts& f, const char* part) {
+std::string fissure(const SceneFacts& f, const std::string& part) {
   return fmt::format("  <include file=\"{}/{}\">\n    <variable name=\"lobes\" value=\"{}\"/>\n  </include>\n",
                      f.assets.parts, part, f.assets.lobes);
 }
 
 std::string tool(const SceneFacts& f, const char* element, const char* id, const char* hand, const char* model,
-                 const char* rest) {
+                 const std::string& rest) {
   return fmt::format("  <{} id=\"{}\" hand=\"{}\" model=\"{}/instruments/{}/{}.urdf\"\n    {}/>\n", element, id, hand,
                      f.assets.meshes, model, model, rest);
+}
+
+constexpr const char* soft = " coupling=\"250 N/m\"";
+
+std::string view(const SceneFacts& f, const ApproachView& v) {
+  return fmt::format("  <view eye=\"{}\" target=\"{}\" up=\"{}\" field_of_view=\"{}\"/>", v.eye,
+                     v.target.empty() ? point(f.neck + v.from_neck) : v.target, v.up, v.field_of_view);
+}
+
+/// The tissue about the vessel.
+std::string tissue(const Approach& a) { return a.lobes[0] + " " + a.lobes[1] + " " + a.floor; }
+/// What tools may meet besides the vessel.
+std::string met(const Approach& a) { return tissue(a) + " " + joined(a.obstacles); }
+
+std::string bed(const Approach& a) {
+  return "  <contact id=\"bed\" between=\"artery " + tissue(a) +
+         "\" friction=\"0\" tissue_alarm=\"0.3 mm\" tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" "
+         "tissue_max_force=\"0.05 N\"/>\n";
 }
 
 /// What the structures bear, as in the exercises of the project. `vessel`: with the artery.
 std::string limits(const SceneFacts& f, bool vessel) {
   std::string s;
   if (vessel) s += fmt::format("    <include file=\"{}/vessel_limits.xml\"/>\n", f.assets.parts);
-  return s + fmt::format("    <include file=\"{}/brain_limits.xml\"/>\n", f.assets.parts);
+  return s + fmt::format("    <include file=\"{}/{}\"/>\n", f.assets.parts, f.approach.limits_part);
 }
 
 /// The weak spot: the bleb, or the sac as a whole, whose wall is thicker.
-std::string weak_spot(const SceneFacts& f, const char* up, int radius_mm, int depth_mm) {
+std::string weak_spot(const SceneFacts& f, const ApproachField& field) {
   std::string s = fmt::format(
       "  <include file=\"{}/bleb.xml\">\n    <variable name=\"blood_bottom\" value=\"{}\"/>\n"
-      "    <variable name=\"blood_up\" value=\"{}\"/>\n    <variable name=\"blood_radius\" value=\"{} mm\"/>\n"
-      "    <variable name=\"blood_depth\" value=\"{} mm\"/>\n",
-      f.assets.parts, point(f.neck - 5 * to_surgeon), up, radius_mm, depth_mm);
+      "    <variable name=\"blood_up\" value=\"{}\"/>\n    <variable name=\"blood_radius\" value=\"{}\"/>\n"
+      "    <variable name=\"blood_depth\" value=\"{}\"/>\n",
+      f.assets.parts, point(f.neck - 5 * f.approach.to_surgeon), field.blood_up, field.blood_radius, field.blood_depth);
   if (!f.bleb)
     s += "    <variable name=\"bleb_region\" value=\"sac\"/>\n    <variable name=\"bleb_force\" value=\"1.5 N\"/>\n"
          "    <variable name=\"bleb_sharp_force\" value=\"0.15 N\"/>\n";
@@ -121,48 +138,39 @@ std::string artery_part(const SceneFacts& f) {
 }
 
 std::string field_part(const SceneFacts& f) {
+  const Approach& a = f.approach;
   const std::string clips = joined(f.clips);
   std::string s = head;
   s += fmt::format("<!-- What the exercises with clips share. {} -->\n<part>\n", training_only);
-  s += fissure(f, "retracted_fissure.xml");
+  s += fissure(f, a.open_part);
   s += "  <include file=\"artery.xml\"/>\n";
   for (const std::string& c : f.clips)
     s += fmt::format("  <clip id=\"{}\" model=\"{}/clips/{}/{}.urdf\"/>\n", c, f.assets.meshes, c, c);
-  s += fmt::format("  <view eye=\"329 86 72 mm\" target=\"{}\" up=\"0 0 1\" field_of_view=\"5.5 deg\"/>\n",
-                   point(f.neck + Vec3(1.8, 0.2, 0.8)));
+  s += view(f, a.clipping.view) + "\n";
   s += "  <settle time=\"3 s\"/>\n  <solver max_sweeps=\"100\" tolerance=\"1e-7 m\" conjugate=\"true\" "
        "newton=\"8\"/>\n\n";
-  s += tool(f, "suction", "suction", "left", "suction",
-            "home=\"88 -4 10 mm\" shaft=\"0.85 -0.35 0.39\" flat=\"0 -0.5 0.87\" coupling=\"250 N/m\"");
-  s += tool(f, "dissector", "probe", "left", "dissector",
-            "sharp=\"never\" home=\"88 -4 10 mm\" shaft=\"0.85 -0.35 0.39\" flat=\"0 -0.5 0.87\" coupling=\"250 N/m\"");
-  s += tool(
-      f, "clip_applier", "applier", "right", "clip_applier",
-      fmt::format(
-          "home=\"92 26 1 mm\" shaft=\"0.93 0.35 -0.11\" flat=\"-0.34 0.93 0.12\" coupling=\"500 N/m\" clips=\"{}\"",
-          clips)
-          .c_str());
-  s += tool(f, "dissector", "stylus", "right", "dissector",
-            "home=\"92 26 1 mm\" shaft=\"0.93 0.35 -0.11\" flat=\"-0.34 0.93 0.12\" coupling=\"250 N/m\"");
-  s += tool(f, "micro_doppler", "doppler", "right", "micro_doppler",
-            "home=\"92 26 1 mm\" shaft=\"0.93 0.35 -0.11\" flat=\"-0.34 0.93 0.12\" coupling=\"250 N/m\"");
-  s += "\n" + weak_spot(f, "0.93 0.25 0.27", 16, 20);
-  s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" "
-       "tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"
-       "  <contact id=\"tools\" between=\"artery frontal temporal insula window suction probe applier stylus "
+  s += tool(f, "suction", "suction", "left", "suction", a.clipping.left + soft);
+  s += tool(f, "dissector", "probe", "left", "dissector", "sharp=\"never\" " + a.clipping.left + soft);
+  s += tool(f, "clip_applier", "applier", "right", "clip_applier",
+            a.clipping.right + fmt::format(" coupling=\"500 N/m\" clips=\"{}\"", clips));
+  s += tool(f, "dissector", "stylus", "right", "dissector", a.clipping.right + soft);
+  s += tool(f, "micro_doppler", "doppler", "right", "micro_doppler", a.clipping.right + soft);
+  s += "\n" + weak_spot(f, a.clipping) + bed(a);
+  s += "  <contact id=\"tools\" between=\"artery " + met(a) +
+       " suction probe applier stylus "
        "doppler\" friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\" max_correction=\"0.2 mm\"/>\n";
   s += fmt::format(
       "  <contact id=\"blades\" between=\"artery {}\" friction=\"0.35\" contact_geometry=\"vertices\" patch=\"2.5 mm\" "
       "max_contacts=\"60\" alarm=\"0.12 mm\" max_correction=\"0.1 mm\"/>\n",
       clips);
   s += fmt::format(
-      "  <contact id=\"clips_in_the_field\" between=\"insula {}\" friction=\"0.2\" max_force=\"2 N\" spacing=\"2 mm\" "
+      "  <contact id=\"clips_in_the_field\" between=\"{} {}\" friction=\"0.2\" max_force=\"2 N\" spacing=\"2 mm\" "
       "max_contacts=\"6\" alarm=\"0.5 mm\" max_correction=\"0.2 mm\"/>\n",
-      clips);
+      a.floor, clips);
   s += fmt::format(
-      "  <contact id=\"clips_on_the_lobes\" between=\"frontal temporal {}\" friction=\"0\" max_force=\"0.1 N\" "
+      "  <contact id=\"clips_on_the_lobes\" between=\"{} {}\" friction=\"0\" max_force=\"0.1 N\" "
       "spacing=\"2 mm\" max_contacts=\"6\" alarm=\"0.5 mm\" max_correction=\"0.2 mm\"/>\n</part>\n",
-      clips);
+      a.lobes[0] + " " + a.lobes[1], clips);
   return s;
 }
 
@@ -175,7 +183,8 @@ std::string membrane(const std::string& id, const std::string& strands) {
 }  // namespace
 
 std::string strands(const SceneFacts& f, const std::string& kind) {
-  const Vec3 shift = f.strand_shift * to_surgeon, ball = 0.4 * f.neck + 0.6 * f.dome + 1.5 * to_surgeon + shift;
+  const Vec3 &to_surgeon = f.approach.to_surgeon, shift = f.strand_shift * to_surgeon,
+             ball = 0.4 * f.neck + 0.6 * f.dome + 1.5 * to_surgeon + shift;
   const double radius = 0.55 * f.dome_reach + 2;
   const bool own = kind == "branches";
   const std::string fibres = fmt::format(
@@ -186,15 +195,15 @@ std::string strands(const SceneFacts& f, const std::string& kind) {
       kind, own ? std::string("artery_wall") : kind + "_surface",
       point(own ? Vec3(f.neck + 2 * to_surgeon + shift) : ball), own ? radius - 1 : radius,
       f.strand_share * (own ? 40 : 24), own ? "3" : "7",
-      kind == "frontal"    ? 11
-      : kind == "temporal" ? 12
-                           : 14);
+      kind == f.approach.lobes[0]   ? 11
+      : kind == f.approach.lobes[1] ? 12
+                                    : 14);
   return fibres + membrane("membrane_to_" + kind, "to_" + kind);
 }
 
 namespace {
 
-std::string opened(const SceneFacts& f, const char* comment, const char* title) {
+std::string opened(const SceneFacts& f, const std::string& comment, const std::string& title) {
   return fmt::format("{}<!-- {} {} -->\n<scene title=\"{}: {}\" time_step=\"16.6667 ms\">\n", head, comment,
                      training_only, f.name, title);
 }
@@ -208,69 +217,76 @@ std::string case_facts(const SceneFacts& f) {
 }
 
 std::string opening_exercise(const SceneFacts& f) {
-  std::string s =
-      opened(f, "Exercise 1: open the Sylvian fissure over the case's vessel.", "opening the Sylvian fissure");
-  s += fissure(f, "fissure.xml");
-  s += "  <view eye=\"357 66 -25 mm\" target=\"65 6 1 mm\" up=\"0 0 1\" field_of_view=\"12 deg\"/>\n  <solver "
+  const Approach& a = f.approach;
+  const ApproachOpening& o = a.opening;
+  const std::string lobes = a.lobes[0] + " " + a.lobes[1];
+  std::string s = opened(f, "Exercise 1: " + o.comment + ".", o.scene);
+  s += fissure(f, a.closed_part);
+  s += view(f, o.view) +
+       "\n  <solver "
        "max_sweeps=\"80\" tolerance=\"1e-7 m\"/>\n\n";
   s += fmt::format(
       "  <!-- The vessel lies below: seen through the opened lips, not touched yet. -->\n  <obstacle "
       "id=\"artery\">\n    <surface id=\"artery_wall\" mesh=\"artery/picture.ply\" mesh_unit=\"mm\" "
       "material=\"vessel\" contact=\"false\"/>\n  </obstacle>\n");
-  s += tool(f, "suction", "left_suction", "left", "suction",
-            "home=\"95.3 -6.4 7.4 mm\" shaft=\"0.912 -0.346 0.220\" flat=\"-0.08 -0.495 0.865\" coupling=\"250 N/m\"");
-  s += tool(f, "dissector", "right_dissector", "right", "dissector",
-            "home=\"82.6 25 10.3 mm\" shaft=\"0.825 0.552 0.120\" flat=\"-0.297 0.372 0.879\" coupling=\"250 N/m\"");
-  s += "  <strand_springs id=\"arachnoid\" from=\"frontal_surface\" to=\"temporal_surface\" density=\"42 1/cm2\" "
-       "max_length=\"4.5 mm\" centre=\"66 3.5 5 mm\" radius=\"10.5 mm\" seed=\"7\"\n"
-       "    stiffness=\"6 N/m\" slack=\"1.1\" strength=\"0.02 N\" cut_force=\"0.015 N\" cut_length=\"0.8 mm\" "
+  s += tool(f, "suction", "left_suction", "left", "suction", o.left + soft);
+  s += tool(f, "dissector", "right_dissector", "right", "dissector", o.right + soft);
+  s += fmt::format(
+      "  <strand_springs id=\"arachnoid\" from=\"{}_surface\" to=\"{}_surface\" density=\"42 1/cm2\" "
+      "max_length=\"4.5 mm\" centre=\"{}\" radius=\"{}\" seed=\"7\"\n",
+      a.lobes[0], a.lobes[1], o.strands_centre, o.strands_radius);
+  s += "    stiffness=\"6 N/m\" slack=\"1.1\" strength=\"0.02 N\" cut_force=\"0.015 N\" cut_length=\"0.8 mm\" "
        "reach=\"0.6 mm\"/>\n";
   s += membrane("membrane", "arachnoid");
-  s += "  <contact id=\"lobes\" between=\"frontal temporal\" friction=\"0\" tissue_alarm=\"0.8 mm\" "
+  s += "  <contact id=\"lobes\" between=\"" + lobes +
+       "\" friction=\"0\" tissue_alarm=\"0.8 mm\" "
        "tissue_spacing=\"2 mm\" tissue_max_contacts=\"40\"/>\n"
-       "  <contact id=\"at_floor_and_bone\" between=\"frontal temporal insula window\" friction=\"0\" "
+       "  <contact id=\"at_floor_and_bone\" between=\"" +
+       met(a) +
+       "\" friction=\"0\" "
        "tissue_spacing=\"2 mm\" tissue_max_contacts=\"40\" tissue_max_force=\"0.05 N\"/>\n"
-       "  <contact id=\"tools\" between=\"frontal temporal insula window left_suction right_dissector\" "
+       "  <contact id=\"tools\" between=\"" +
+       met(a) +
+       " left_suction right_dissector\" "
        "friction=\"0.1\" "
        "spacing=\"1 mm\" max_contacts=\"10\"/>\n\n"
        "  <exercise" +
-       case_facts(f) +
-       " id=\"sylvian_fissure\" title=\"Opening the Sylvian fissure\" text=\"Take hold of the temporal "
-       "lobe with the suction tube and draw it down a little. Divide the strands with the dissector's edge, first at "
-       "the surface, then deeper.\">\n"
+       case_facts(f) + fmt::format(" id=\"{}\" title=\"{}\" text=\"{}\">\n", o.id, o.title, o.text) +
        "    <goal_opening id=\"open\" text=\"Part the lips of the fissure by 5 mm and hold them\" "
-       "a=\"frontal_surface\" b=\"temporal_surface\" at=\"67 5 4 mm\" distance=\"5 mm\" hold=\"2 s\"/>\n"
+       "a=\"" +
+       a.lobes[0] + "_surface\" b=\"" + a.lobes[1] + "_surface\" at=\"" + o.opens_at +
+       "\" distance=\"5 mm\" hold=\"2 s\"/>\n"
        "    <goal_strands id=\"divide\" text=\"Divide all arachnoid strands\" fraction=\"1\"/>\n"
        "    <goal_two_hands id=\"together\" text=\"Divide strands while the suction tube holds a lip aside\" "
-       "event=\"strand_cut\" count=\"10\" on=\"frontal temporal\" force=\"0.02 N\" "
+       "event=\"strand_cut\" count=\"10\" on=\"" +
+       lobes +
+       "\" force=\"0.02 N\" "
        "remaining=\"arachnoid.standing\"/>\n" +
        limits(f, false) + metrics(f, true, false) +
        "    <fault_torn id=\"torn\" text=\"A strand tore: cut it before you draw the lobe further\"/>\n"
        "    <fault_order id=\"order\" text=\"Too deep too early: divide the strands at the surface first\" "
-       "inward=\"-0.946 -0.236 -0.220\" margin=\"5 mm\" allowed=\"6\"/>\n"
+       "inward=\"" +
+       o.inward +
+       "\" margin=\"5 mm\" allowed=\"6\"/>\n"
        "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n";
-  if (f.opened) s += "    <motion id=\"steady\" file=\"1_sylvian_fissure_steady.csv\"/>\n";
+  if (f.opened) s += "    <motion id=\"steady\" file=\"" + o.file + "_steady.csv\"/>\n";
   s += "  </exercise>\n</scene>\n";
   return s;
 }
 
 std::string dissection_exercise(const SceneFacts& f) {
+  const Approach& a = f.approach;
   std::string s = opened(f, "Exercise 2: free the aneurysm of its strands.", "dissection of the aneurysm");
-  s += fissure(f, "retracted_fissure.xml");
+  s += fissure(f, a.open_part);
   s += "  <include file=\"artery.xml\"/>\n";
-  s += fmt::format(
-      "  <view eye=\"329 86 72 mm\" target=\"{}\" up=\"0 0 1\" field_of_view=\"9 deg\"/>\n  <settle time=\"3 s\"/>\n "
-      " <solver max_sweeps=\"80\" tolerance=\"1e-7 m\"/>\n\n",
-      point(f.neck + Vec3(2.5, 0, 1)));
-  s += tool(f, "suction", "left_suction", "left", "suction",
-            "home=\"98 -4 8 mm\" shaft=\"0.87 -0.42 0.26\" flat=\"0 0 1\" coupling=\"250 N/m\"");
-  s += tool(f, "dissector", "right_stylus", "right", "dissector",
-            "home=\"92 44 12 mm\" shaft=\"0.80 0.55 0.24\" flat=\"0 0 1\" coupling=\"250 N/m\"");
-  s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" "
-       "tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"
-       "  <contact id=\"tools\" between=\"artery frontal temporal insula window left_suction right_stylus\" "
+  s +=
+      view(f, a.dissection.view) + "\n  <settle time=\"3 s\"/>\n  <solver max_sweeps=\"80\" tolerance=\"1e-7 m\"/>\n\n";
+  s += tool(f, "suction", "left_suction", "left", "suction", a.dissection.left + soft);
+  s += tool(f, "dissector", "right_stylus", "right", "dissector", a.dissection.right + soft);
+  s += bed(a) + "  <contact id=\"tools\" between=\"artery " + met(a) +
+       " left_suction right_stylus\" "
        "friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\"/>\n";
-  s += weak_spot(f, "0.93 0.22 0.28", 12, 25);
+  s += weak_spot(f, a.dissection);
   for (const std::string& kind : f.strand_sets) s += strands(f, kind);
   s += "\n  <exercise" + case_facts(f) +
        " id=\"aneurysm_dissection\" title=\"Dissection of the aneurysm\" text=\"Divide all strands with "

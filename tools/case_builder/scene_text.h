@@ -13,6 +13,7 @@ struct WallText {
 /// What the texts are made of.
 struct SceneFacts {
   std::string name;
+  Approach approach;
   Assets assets;
   std::vector<WallText> walls;
   std::string tethered;            ///< regions that the surroundings hold
@@ -33,7 +34,7 @@ struct SceneFacts {
 
 std::string artery_part(const SceneFacts& facts);
 std::string field_part(const SceneFacts& facts);
-/// Strands of one kind about the aneurysm: "frontal", "temporal", "branches".
+/// Strands of one kind about the aneurysm: to a lobe, or "branches".
 std::string strands(const SceneFacts& facts, const std::string& kind);
 std::string exercise(const SceneFacts& facts, int number);
 

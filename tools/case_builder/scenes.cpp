@@ -18,7 +18,7 @@ namespace insula::case_builder {
 namespace {
 
 constexpr const char* temporary_clip = "temporary_straight";
-constexpr const char* names[] = {"1_sylvian_fissure", "2_aneurysm_dissection", "3_clipping", "4_rupture"};
+const std::string later[] = {"2_aneurysm_dissection", "3_clipping", "4_rupture"};
 
 /// Clips on the tray of a case: those for the neck first, then one of each kind.
 std::vector<std::string> on_tray(const std::vector<std::string>& first) {
@@ -29,8 +29,9 @@ std::vector<std::string> on_tray(const std::vector<std::string>& first) {
   return out;
 }
 
-SceneFacts facts_of(const CaseFolder& folder, const artery::Vessel& v, const Options& o) {
+SceneFacts facts_of(const CaseFolder& folder, const artery::Vessel& v, const Options& o, const Approach& approach) {
   SceneFacts f;
+  f.approach = approach, f.opened = !approach.opening.motion.empty();
   f.name = folder.name;
   f.site = o.site, f.difficulty = o.difficulty;
   f.temporary = temporary_clip;
@@ -50,7 +51,7 @@ SceneFacts facts_of(const CaseFolder& folder, const artery::Vessel& v, const Opt
 void write_clipping(const SceneFacts& f, const CaseFolder& folder) {
   write_text(folder.path / "artery.xml", artery_part(f));
   write_text(folder.path / "field.xml", field_part(f));
-  write_text(exercise_files(folder)[2], exercise(f, 3));
+  write_text(exercise_file(folder, 3), exercise(f, 3));
 }
 
 /// The best of the ranked plans in the running scene. A plan that an author has fixed is played, and left as it is.
@@ -64,17 +65,21 @@ RehearsedClip rehearsed_clip(SceneFacts f, const CaseFolder& folder, const fs::p
   for (const ClipPlan& p : tried)
     if (std::find(names.begin(), names.end(), p.clip.name) == names.end()) names.push_back(p.clip.name);
   f.clips = on_tray(names);
-  f.assets = link_assets(folder, project, f.clips);
+  f.assets = link_assets(folder, project, f.clips, f.approach);
   write_clipping(f, folder);
-  return rehearse_clipping(exercise_files(folder)[2], folder.path / "3_clipping_steady.csv", v, tried, !fixed, o.plays,
+  return rehearse_clipping(exercise_file(folder, 3), folder.path / "3_clipping_steady.csv", v, tried, !fixed, o.plays,
                            progress);
 }
 
 }  // namespace
 
+fs::path exercise_file(const CaseFolder& folder, int number) {
+  return folder.path / ((number == 1 ? folder.opening : later[number - 2]) + ".xml");
+}
+
 std::vector<fs::path> exercise_files(const CaseFolder& folder) {
   std::vector<fs::path> out;
-  for (const char* n : names) out.push_back(folder.path / (std::string(n) + ".xml"));
+  for (int k = folder.opening.empty() ? 2 : 1; k <= 4; ++k) out.push_back(exercise_file(folder, k));
   return out;
 }
 
@@ -85,10 +90,11 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   if (!v.neck) throw InputError("the vessel has no neck; do the stage wall again");
   std::vector<Note> notes;
   const std::vector<ClipShape> clips = read_clips(project);
-  const Solid floor(read_ply(folder.lobes() / "insula_surface.ply"));
-  const std::vector<ClipPlan> ranked = clip_plans(v, floor, clips, o);
+  const Approach approach = read_approach(project, o.approach);
+  const Solid floor(read_ply(folder.lobes() / (approach.floor + "_surface.ply")));
+  const std::vector<ClipPlan> ranked = clip_plans(v, floor, clips, o, approach);
 
-  SceneFacts f = facts_of(folder, v, o);
+  SceneFacts f = facts_of(folder, v, o, approach);
   RehearsedClip clipped{ranked.front(), {}, 0};
   if (o.rehearse) clipped = rehearsed_clip(f, folder, project, v, ranked, o, progress);
   const ClipPlan& plan = clipped.plan;
@@ -97,19 +103,20 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
 
   progress.step("writing the exercises");
   f.clips = on_tray({plan.clip.name});
-  f.assets = link_assets(folder, project, f.clips);
+  f.assets = link_assets(folder, project, f.clips, f.approach);
   write_clipping(f, folder);
-  write_text(folder.path / "1_sylvian_fissure_steady.csv",
-             read_file_bytes(project / "scenes/training/1_sylvian_fissure_steady.csv"));
+  if (f.opened)
+    write_text(folder.path / (approach.opening.file + "_steady.csv"),
+               read_file_bytes(project / approach.opening.motion));
   write_text(folder.path / "3_clipping_steady.csv", clipping_motion(plan));
   const auto temporary =
       std::find_if(clips.begin(), clips.end(), [&](const ClipShape& c) { return c.name == f.temporary; });
   if (temporary == clips.end()) throw InputError("the library has no clip " + f.temporary);
-  const ApplierPose held = plan_temporary(v, floor, *temporary);
+  const ApplierPose held = plan_temporary(v, floor, *temporary, approach);
 
   spin_strands(f, folder, o.rehearse, notes, progress);
   if (!o.brain.empty()) try_opening(f, folder, o.rehearse, notes, progress);
-  script_rupture(folder, v, plan, held, f.temporary, o.rehearse, notes, progress);
+  script_rupture(folder, v, plan, held, f, o.rehearse, notes, progress);
   progress.step("writing");
   Json json;
   json["clip"] = {{"name", plan.clip.name},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Stage 4: the placed vessel and its lobes become the four exercises, as scene files that an author can go on editing.
 #pragma once
-#include "tools/case_builder/case_folder.h"
+#include "tools/case_builder/approach.h"
 #include "tools/case_builder/progress.h"
 
 namespace insula::case_builder {
@@ -13,9 +13,12 @@ struct Assets {
   std::string lobes;   ///< the case's lobes, from a file in the parts' folder
   bool copied = false;
 };
-Assets link_assets(const CaseFolder& folder, const fs::path& project, const std::vector<std::string>& clips);
+Assets link_assets(const CaseFolder& folder, const fs::path& project, const std::vector<std::string>& clips,
+                   const Approach& approach);
 
-/// The exercises' files, in order.
+/// The file of an exercise: 1 opens the fissure, 2 frees the aneurysm, 3 clips it, 4 is its rupture.
+fs::path exercise_file(const CaseFolder& folder, int number);
+/// The files of all exercises that a case has, in order. Some approaches have no exercise 1.
 std::vector<fs::path> exercise_files(const CaseFolder& folder);
 
 /// The stage: reads artery/, lobes/ and wall/notes.json, writes *.xml and *.csv. Throws InputError.

@@ -116,13 +116,15 @@ def main(argv=None):
     par = json.loads(text)
     with open(os.path.join(args.lobes, "fissure.json"), encoding="utf-8") as f:
         fissure = json.load(f)
+    with open(os.path.join(args.lobes, "approach.json"), encoding="utf-8") as f:
+        approach = json.load(f)
     n = unit(tuple(fissure["outward_normal"]))
     up = unit(sub((0.0, 0.0, 1.0), combine((0.0, 0.0, 0.0), (n[2], n))))
     x_axis = cross(up, n)
     shift = par["fit"]["shift"]
     centre = combine(tuple(fissure["centre"]), (shift[0], x_axis), (shift[1], up))
     brain = []
-    for lobe in ("frontal", "temporal"):
+    for lobe in approach["lobes"]:
         for p in ply_vertices(os.path.join(args.lobes, f"{lobe}_surface.ply")):
             d = sub(p, centre)
             brain.append((dot(d, x_axis), dot(d, up), dot(d, n)))

@@ -24,6 +24,7 @@ const char* const usage_text = R"(usage: insula_mesh_volume --labels FILE.nii[.g
 Input (lengths in mm, positions in the volume's right-anterior-superior frame)
   --labels FILE          label volume; 0 is background
   --part NAME=LIST       a part: labels to unite, e.g. frontal=2,4,10-16 (repeat; parts are kept apart)
+  --more-labels FILE     another label volume: its label N is called 1000 + N, and where a part has it, it wins
   --intensity FILE       image of the same head: sharpens the border of tissue and steers the borders between parts
   --tissue VALUE         intensity at which tissue begins
   --tissue-slope VALUE   change of intensity a millimetre across that border (25)
@@ -72,7 +73,7 @@ std::vector<double> numbers(const std::string& text, std::size_t count, const st
 }
 
 struct Job {
-  std::string labels, intensity;
+  std::string labels, more_labels, intensity;
   std::vector<Part> parts;
   FieldOptions fields;
   bool has_tissue = false;  ///< whether the intensity threshold of tissue was given
@@ -150,6 +151,7 @@ void set_tissue(Job& job, const Given& g) {
 using Setter = void (*)(Job&, const Given&);
 const std::map<std::string, Setter> setters = {
     {"--labels", [](Job& j, const Given& g) { j.labels = g.value; }},
+    {"--more-labels", [](Job& j, const Given& g) { j.more_labels = g.value; }},
     {"--intensity", [](Job& j, const Given& g) { j.intensity = g.value; }},
     {"--part", add_part},
     {"--tissue", set_tissue},
@@ -282,7 +284,8 @@ void make_surfaces(const Job& job, const PartFields& fields) {
 
 int run(int argc, char** argv) {
   const Job job = parse(argc, argv);
-  const NiftiVolume labels = read_nifti(job.labels);
+  NiftiVolume labels = read_nifti(job.labels);
+  if (!job.more_labels.empty()) add_labels(labels, read_nifti(job.more_labels), job.parts);
   NiftiVolume intensity;
   if (!job.intensity.empty()) intensity = read_nifti(job.intensity);
   const PartFields fields =

@@ -164,6 +164,25 @@ Field coarse_level(const Grid& grid, const Tissue& tissue, const Mask& fine, con
 
 }  // namespace
 
+void add_labels(NiftiVolume& labels, const NiftiVolume& more, const std::vector<Part>& parts) {
+  constexpr int first = 1000;
+  const auto wanted = [&](int label) {
+    return std::any_of(parts.begin(), parts.end(), [&](const Part& p) {
+      return std::find(p.labels.begin(), p.labels.end(), label) != p.labels.end();
+    });
+  };
+  std::size_t n = 0;
+  const double* m = labels.to_world.data();
+  for (int k = 0; k < labels.size[2]; ++k)
+    for (int j = 0; j < labels.size[1]; ++j)
+      for (int i = 0; i < labels.size[0]; ++i, ++n) {
+        Vec3 p{};
+        for (std::size_t a = 0; a < 3; ++a) p[a] = m[4 * a] * i + m[4 * a + 1] * j + m[4 * a + 2] * k + m[4 * a + 3];
+        const int other = static_cast<int>(std::lround(more.nearest(p)));
+        if (other > 0 && wanted(first + other)) labels.value[n] = static_cast<float>(first + other);
+      }
+}
+
 PartFields build_part_fields(const NiftiVolume& labels, const NiftiVolume* intensity, const std::vector<Part>& parts,
                              const FieldOptions& options) {
   if (parts.empty() || parts.size() > 200) throw std::runtime_error("between 1 and 200 parts are needed");

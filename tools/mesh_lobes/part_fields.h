@@ -39,6 +39,10 @@ struct PartFields {
   std::vector<Field> others;  // distance (mm) to the fine sets of all other parts
 };
 
+// Writes labels of another volume into the voxels of `labels`: its label N becomes 1000 + N wherever a part has that
+// one.
+void add_labels(NiftiVolume& labels, const NiftiVolume& more, const std::vector<Part>& parts);
+
 // Gives every voxel of tissue to a part (or to "anything else") by growth from the labels along bright tissue, and then
 // builds the levels. Borders therefore follow the dark sulci, and white matter without a label joins the gyrus above
 // it. `intensity` may be null: then every labelled voxel is tissue. Throws std::runtime_error when a part is empty.
