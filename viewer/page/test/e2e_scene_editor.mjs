@@ -116,6 +116,21 @@ try {
   await saved(page);
   check('an element is added from the list of what is allowed, and removed');
 
+  const part = copy.replace('training/1_sylvian_fissure', 'parts/metrics');
+  const partBefore = onDisk(part);
+  await page.locator('.cm-content').click();
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type('<!-- last words -->');
+  await page.getByLabel('File').selectOption('scenes/parts/metrics.xml');
+  await page.getByRole('treeitem').filter({ hasText: 'part' }).first().waitFor(patience);
+  await saved(page);
+  await page.getByLabel('File').selectOption('scenes/training/1_sylvian_fissure.xml');
+  await page.getByRole('treeitem').filter({ hasText: 'scene' }).first().waitFor(patience);
+  await saved(page);
+  assert.match(onDisk(copy), /<!-- last words -->$/);
+  assert.equal(onDisk(part), partBefore);
+  check('what was typed just before another file was opened is kept');
+
   await page.getByRole('button', { name: 'Look at it' }).click();
   await page.locator('.live iframe').waitFor(patience);
   const picture = () => page.frames().find((f) => f !== page.mainFrame() && f.url().startsWith('http'));

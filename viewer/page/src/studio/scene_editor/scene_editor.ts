@@ -47,6 +47,8 @@ export class SceneEditor {
   private outline: OutlineElement | null = null;
   private selected: number[] = [];
   private scene: string;
+  /** File whose text is shown. */
+  private opened = '';
   private saved = '';
   private timer = 0;
   private choosing = false;
@@ -75,9 +77,7 @@ export class SceneEditor {
         this.change(withoutElement(this.content.content, e));
       },
     });
-    this.versions = new VersionSelect(async (n) =>
-      this.content.replace(await api.version(copy.name, this.file.value, n)),
-    );
+    this.versions = new VersionSelect(async (n) => this.content.replace(await api.version(copy.name, this.opened, n)));
     this.live = new LiveView(api, copy.name, () => this.scene, {
       taken: (seen) => void this.trying(this.take(seen)),
       placed: (at) => this.placed(at),
@@ -109,9 +109,17 @@ export class SceneEditor {
   }
 
   end(): void {
-    window.clearTimeout(this.timer);
+    this.keep();
     this.content.end();
     this.live.end();
+  }
+
+  /** What was typed last is kept by the gateway before the text goes. */
+  private keep(): void {
+    window.clearTimeout(this.timer);
+    const { content } = this.content;
+    if (content === this.saved) return;
+    void this.api.check(this.copy.name, this.scene, this.opened, content).catch(() => undefined);
   }
 
   private async trying(work: Promise<unknown>): Promise<void> {
@@ -125,16 +133,16 @@ export class SceneEditor {
 
   /** Puts another text of a file in place, as one step that can be taken back. */
   private readonly writer = async (file: string, change: (doc: string) => Change | null): Promise<void> => {
-    if (file !== this.file.value) await this.load(file);
+    if (file !== this.opened) await this.load(file);
     const made = change(this.content.content);
     if (made) this.content.change(made);
   };
 
   private async load(file: string): Promise<void> {
     const got: SceneText = await this.api.file(this.copy.name, file);
-    window.clearTimeout(this.timer);
+    this.keep();
     this.noPlacing();
-    this.file.value = file;
+    this.file.value = this.opened = file;
     if (this.copy.scenes.includes(file)) this.scene = file;
     this.saved = got.text;
     this.versions.show(got.versions);
@@ -169,13 +177,13 @@ export class SceneEditor {
   }
 
   private ofThisFile(): Problem[] {
-    return this.found.filter((p) => p.file === this.file.value && p.line > 0);
+    return this.found.filter((p) => p.file === this.opened && p.line > 0);
   }
 
   private async check(): Promise<void> {
-    const [file, content] = [this.file.value, this.content.content];
+    const [file, content] = [this.opened, this.content.content];
     const checked = await this.api.check(this.copy.name, this.scene, file, content);
-    if (!checked || file !== this.file.value || content !== this.content.content) return;
+    if (!checked || file !== this.opened || content !== this.content.content) return;
     this.found = checked.problems;
     this.problems.show(this.found);
     this.content.mark(this.ofThisFile());
@@ -184,13 +192,15 @@ export class SceneEditor {
       setText(this.state, text('Not saved: the scene has errors. The one before stays.'));
       return;
     }
-    this.versions.show(await this.api.write(this.copy.name, file, content));
+    const versions = await this.api.write(this.copy.name, file, content);
+    if (file !== this.opened) return;
+    this.versions.show(versions);
     this.saved = content;
     if (this.content.content === this.saved) setText(this.state, text('Saved'));
   }
 
   private take(seen: Seen): Promise<void> {
-    return takenView(this.api, this.copy, this.file.value, this.content.content, seen, this.writer);
+    return takenView(this.api, this.copy, this.opened, this.content.content, seen, this.writer);
   }
 
   private place(e: OutlineElement, parameter: Parameter): void {
@@ -243,7 +253,7 @@ export class SceneEditor {
 
   private async goTo(p: Problem): Promise<void> {
     if (!this.copy.files.includes(p.file)) return;
-    if (p.file !== this.file.value) await this.trying(this.load(p.file));
+    if (p.file !== this.opened) await this.trying(this.load(p.file));
     const at = this.content.placeOf(p.line, p.column);
     this.content.select(at, at, true);
     this.moved(at);
