@@ -300,5 +300,18 @@ TEST_F(HalfBalls, EmptyPartAndRegionAreRefused) {
   EXPECT_THROW(build_part_fields(half_balls(), nullptr, {{"upper", {3}}}, away), std::runtime_error);
 }
 
+TEST(MoreLabels, ReplaceOnlyWhereAPartHasThem) {
+  NiftiVolume labels = half_balls(), more = labels;
+  for (float& v : more.value) v = v == 3 ? 4.0f : v == 7 ? 5.0f : 0.0f;
+  const NiftiVolume before = labels;
+  add_labels(labels, more, {{"deep", {1004}}, {"lower", {7}}});
+  std::size_t replaced = 0;
+  for (std::size_t i = 0; i < labels.value.size(); ++i) {
+    EXPECT_EQ(labels.value[i], before.value[i] == 3 ? 1004.0f : before.value[i]);
+    replaced += labels.value[i] == 1004.0f;
+  }
+  EXPECT_GT(replaced, 100u);
+}
+
 }  // namespace
 }  // namespace insula::mesh_tool

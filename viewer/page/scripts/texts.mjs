@@ -65,10 +65,11 @@ export function stale(language) {
 /** Complete scenes in the folders that the start page offers, and the curricula. */
 function shippedFiles() {
   return ['scenes/training', 'scenes/skills', 'scenes/cases', 'curricula'].flatMap((group) =>
-    readdirSync(join(project, group))
+    readdirSync(join(project, group), { recursive: true })
       .filter((f) => f.endsWith('.xml') && !f.startsWith('bench_'))
       .sort()
-      .map((f) => join(project, group, f)),
+      .map((f) => join(project, group, f))
+      .filter((f) => !/<part[\s>]/.test(readFileSync(f, 'utf8'))),
   );
 }
 

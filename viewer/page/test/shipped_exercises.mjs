@@ -23,7 +23,7 @@ function exerciseOf(group, name) {
 
 export const shippedExercises = () =>
   ['skills', 'training', 'cases'].flatMap((group) =>
-    readdirSync(join(root, 'scenes', group))
+    readdirSync(join(root, 'scenes', group), { recursive: true })
       .filter((name) => name.endsWith('.xml'))
       .sort()
       .flatMap((name) => exerciseOf(group, name)),
