@@ -8,6 +8,7 @@ import type { SceneCopy, ScenesApi } from './api';
 import { placedFrom, type Seen, viewFrom } from './seen';
 
 const waitMs = 500;
+const followMs = 1000;
 
 export interface Hears {
   /** Where the microscope stands. */
@@ -24,6 +25,7 @@ export class LiveView {
   private readonly close = el('button', { type: 'button' }, text('Close the picture'));
   private readonly take = el('button', { type: 'button', class: 'take' }, text('Take the present view'));
   private readonly say = el('p', { role: 'status' });
+  private readonly fault = el('p', { class: 'bad', role: 'alert' });
   private frame: HTMLIFrameElement | null = null;
   private ended = false;
   private readonly hear = (e: MessageEvent) => {
@@ -42,7 +44,7 @@ export class LiveView {
     this.open.onclick = () => void this.start();
     this.close.onclick = () => void this.leave();
     this.take.onclick = () => this.tell({ insula: 'where' });
-    this.root.append(el('div', { class: 'buttons' }, this.take, this.close, this.say));
+    this.root.append(el('div', { class: 'buttons' }, this.take, this.close, this.say), this.fault);
     this.root.hidden = true;
     window.addEventListener('message', this.hear);
   }
@@ -91,11 +93,27 @@ export class LiveView {
     this.frame = el('iframe', { src: `${look.url}?nohud`, title: text('Picture of the scene') });
     this.root.append(this.frame);
     this.hears.shown(true);
+    void this.follow(this.frame);
+  }
+
+  /** Tells when the picture has ended. */
+  private async follow(frame: HTMLIFrameElement): Promise<void> {
+    while (!this.ended && this.frame === frame) {
+      const look = await this.api.scene(this.name).then(
+        (copy) => copy.look,
+        () => null,
+      );
+      const fault =
+        !look || this.frame !== frame ? '' : look.state === 'ended' ? text('The picture has ended.') : look.error;
+      setText(this.fault, fault);
+      await new Promise((r) => setTimeout(r, followMs));
+    }
   }
 
   private async leave(): Promise<void> {
     this.frame?.remove();
     this.frame = null;
+    setText(this.fault, '');
     this.hears.shown(false);
     this.root.hidden = true;
     this.open.disabled = false;
