@@ -18,8 +18,8 @@ Free tissue changes its volume by dV/V without stress. Tissue that is held on al
 E / (1 - 2 nu) (a - 1) instead.
 
 The bodies of a scene are a part of the brain, and the rest moves with it. The effects are therefore larger than those
-of tissue alone. Mannitol takes about 1 % of the volume of healthy brain. Hyperventilation changes the volume of blood by
-0.04 ml/100 g for each mmHg of carbon dioxide (Grubb et al. 1974). The times are shorter than in an operation, where
+of tissue alone. Mannitol takes about 1 % of the volume of healthy brain. Hyperventilation changes the volume of blood
+by 0.04 ml/100 g for each mmHg of carbon dioxide (Grubb et al. 1974). The times are shorter than in an operation, where
 mannitol needs a quarter of an hour.
 */
 #include <array>

@@ -7,6 +7,7 @@ namespace insula::gateway {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr std::size_t longest_reload_error = 2000;
 constexpr auto session_end = std::chrono::seconds(8);  // insula play ends its own children within three
 
 }  // namespace
@@ -25,7 +26,8 @@ void StudioPlayer::end(const std::string& project) {
 
 void StudioPlayer::change(const std::string& project, const fs::path& scene, bool view) {
   project_ = project, next_ = scene, view_ = view;
-  url_.clear(), error_.clear(), last_line_.clear();
+  url_.clear(), error_.clear(), last_line_.clear(), reload_error_.clear();
+  tells_of_reload_ = false;
   kill_at_ = std::chrono::steady_clock::now() + session_end;
   child_.send(SIGTERM);
   look();
@@ -42,6 +44,10 @@ void StudioPlayer::start() {
 void StudioPlayer::hear(std::string_view line) {
   constexpr std::string_view serving = "viewer at ";
   if (!next_.empty()) return;  // what the session before says at its end
+  const bool own = line.starts_with("insula: ");
+  if (own) tells_of_reload_ = line.find("the saved scene has errors") != std::string_view::npos;
+  if (own && line.find("the scene was saved") != std::string_view::npos) reload_error_.clear();
+  if (!own && tells_of_reload_ && reload_error_.size() < longest_reload_error) reload_error_.append(line) += '\n';
   if (const std::size_t at = line.find(serving); at != std::string_view::npos) url_ = line.substr(at + serving.size());
   else last_line_ = line;
 }
@@ -62,7 +68,11 @@ void StudioPlayer::look() {
 nlohmann::json StudioPlayer::state(const std::string& project) const {
   if (project.empty() || project != project_) return nullptr;
   const bool runs = child_.running() || !next_.empty();
-  return {{"state", !runs ? "ended" : url_.empty() ? "starting" : "running"}, {"url", url_}, {"error", error_}};
+  return {{"state", !runs          ? "ended"
+                    : url_.empty() ? "starting"
+                                   : "running"},
+          {"url", url_},
+          {"error", error_.empty() ? reload_error_ : error_}};
 }
 
 }  // namespace insula::gateway

@@ -23,7 +23,8 @@ class StudioPlayer {
   /// Ends the session if it is of that project.
   void end(const std::string& project);
   void look();
-  /// {state: "starting" | "running" | "ended", url, error}; null if nothing of the project was played.
+  /// {state: "starting" | "running" | "ended", url, error}; null if nothing of the project was played. A running one
+  /// has an error if it could not load the saved scene and goes on with the one before.
   nlohmann::json state(const std::string& project) const;
 
  private:
@@ -34,8 +35,10 @@ class StudioPlayer {
   std::filesystem::path program_, data_;
   ChildProcess child_;
   std::string project_, url_, error_, last_line_;
-  std::filesystem::path next_;  ///< scene that waits for the end of the session before; empty: none
-  bool view_ = false;           ///< it is looked at, not played
+  std::string reload_error_;      ///< why the scene that was saved last is not shown
+  bool tells_of_reload_ = false;  ///< the lines that come are such reasons
+  std::filesystem::path next_;    ///< scene that waits for the end of the session before; empty: none
+  bool view_ = false;             ///< it is looked at, not played
   std::chrono::steady_clock::time_point kill_at_;
 };
 

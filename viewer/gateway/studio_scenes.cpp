@@ -21,16 +21,18 @@ constexpr const char* scene_too_large = "this scene is too large: 200 kB are tak
 
 std::string player_key(const std::string& name) { return "scene " + name; }
 
-/// The problems as `insula check --json` tells them, with files named as in the copy.
-Json named_as_copied(Json problems, const fs::path& folder) {
+/// A text with files named as in the copy.
+std::string named_as_copied(std::string text, const fs::path& folder) {
   const std::string before = folder.string() + "/";
+  for (std::size_t at = text.find(before); at != std::string::npos; at = text.find(before))
+    text.erase(at, before.size());
+  return text;
+}
+
+/// The problems as `insula check --json` tells them.
+Json problems_as_copied(Json problems, const fs::path& folder) {
   for (Json& problem : problems)
-    for (const char* part : {"file", "text"}) {
-      std::string text = text_of(problem, part);
-      for (std::size_t at = text.find(before); at != std::string::npos; at = text.find(before))
-        text.erase(at, before.size());
-      problem[part] = text;
-    }
+    for (const char* part : {"file", "text"}) problem[part] = named_as_copied(text_of(problem, part), folder);
   return problems;
 }
 
@@ -74,12 +76,14 @@ ApiAnswer StudioScenes::shown(const std::string& name) const {
     return answer_with(Json{
         {"name", name}, {"state", copy->second->ended() ? "failed" : "copying"}, {"error", copy->second->error()}});
   if (!files_.has(name)) return refusal(404, no_scene);
+  Json look = player_.state(player_key(name));
+  if (look.is_object()) look["error"] = named_as_copied(text_of(look, "error"), files_.folder(name));
   return answer_with(Json{{"name", name},
                           {"state", "ready"},
                           {"error", ""},
                           {"scenes", files_.scenes(name)},
                           {"files", files_.files(name)},
-                          {"look", player_.state(player_key(name))}});
+                          {"look", look}});
 }
 
 ApiAnswer StudioScenes::file(const std::string& name, std::string_view query) const {
@@ -108,7 +112,7 @@ ApiAnswer StudioScenes::checked(const std::string& name) const {
                           {"number", number},
                           {"error", ""},
                           {"ok", answer.value("ok", false)},
-                          {"problems", named_as_copied(answer["problems"], folder)}});
+                          {"problems", problems_as_copied(answer["problems"], folder)}});
 }
 
 ApiAnswer StudioScenes::open(const fs::path& from, const std::string& file) {

@@ -36,7 +36,12 @@ case "$1 $2" in
   [ -z "$file" ] && echo '{"ok": true, "problems": []}' && exit 0
   echo "{\"ok\": false, \"problems\": [{\"file\": \"$file\", \"line\": 2, \"text\": \"see $file:2\"}]}"
   exit 2;;
-"view "*) echo "insula: viewer at http://127.0.0.1:8090/"; echo "$2" > "$here/viewed"; exec sleep 100;;
+"view "*)
+  echo "insula: viewer at http://127.0.0.1:8090/"; echo "$2" > "$here/viewed"
+  [ -e "$here/unsettled" ] && echo "insula: the scene was saved; loading it" &&
+    echo "insula: the saved scene has errors; the one before goes on" && echo "$2:3:1: error: it does not settle"
+  while [ ! -e "$here/mended" ]; do sleep 0.02; done
+  echo "insula: the scene was saved; loading it"; exec sleep 100;;
 esac
 )sh";
 
@@ -200,6 +205,19 @@ TEST_F(StudioScenesTest, ASceneIsLookedAtAndLeft) {
   EXPECT_EQ(on_disk(folder_.path() / "bin/viewed"), (data_ / "scenes/first/scenes/first.xml").string() + "\n");
   post("scene_leave", {{"name", name}});
   EXPECT_EQ(get("scene", "name=first")["look"], nullptr);
+}
+
+TEST_F(StudioScenesTest, ASavedSceneThatCannotBeShownIsTold) {
+  const std::string name = opened();
+  folder_.write("bin/unsettled", "");
+  post("scene_look", {{"name", name}, {"scene", "scenes/first.xml"}});
+  const auto look = [](const json& j, const std::string& error) {
+    return j["look"].is_object() && j["look"]["state"] == "running" && j["look"]["error"] == error;
+  };
+  wait("scene", "name=first",
+       [&](const json& j) { return look(j, "scenes/first.xml:3:1: error: it does not settle\n"); });
+  folder_.write("bin/mended", "");
+  wait("scene", "name=first", [&](const json& j) { return look(j, ""); });
 }
 
 TEST_F(StudioScenesTest, ElementsAreAskedOnce) {
