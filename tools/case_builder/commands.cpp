@@ -13,6 +13,7 @@
 #include "tools/case_builder/brain.h"
 #include "tools/case_builder/inspect.h"
 #include "tools/case_builder/intake.h"
+#include "tools/case_builder/paint.h"
 #include "tools/case_builder/place.h"
 #include "tools/case_builder/project.h"
 #include "tools/case_builder/report.h"
@@ -116,6 +117,10 @@ void intake_options(CLI::App* app, Options& o) {
                     .min = "5 mm",
                     .max = "200 mm",
                     .doc = "volumes: take only what lies so near to the seed along each axis"});
+  app->add_option_function<std::string>(
+         "--paint", [&o](const std::string& file) { o.paint = read_strokes(file); },
+         "volumes: a JSON file with what was painted into the vessel or erased by hand")
+      ->check(CLI::ExistingFile);
   app->add_flag("--keep-largest", o.keep_largest, "of several pieces take the largest, however large the others are");
   quantity<Length>(
       app, "--rebuild", [&o](double mm) { o.rebuild = mm; },

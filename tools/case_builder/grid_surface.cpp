@@ -15,6 +15,7 @@
 #include "core/model/geometry/triangle_distance.h"
 #include "tools/artery/import_parts.h"
 #include "tools/case_builder/handles.h"
+#include "tools/case_builder/paint.h"
 #include "tools/mesh_lobes/grid_ops.h"
 
 namespace insula::case_builder {
@@ -242,6 +243,16 @@ class VesselVolume {
              : fmt::format("say from which grey value on it is vessel, --threshold N; values run from {:g} to {:g}",
                            least_, most_));
   }
+  /// Takes a ball into a box of voxels, as far as the volume goes.
+  void extend(int (&low)[3], int (&high)[3], const Point& p, double radius) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      double at = v_.from_world[4 * a + 3];
+      for (std::size_t r = 0; r < 3; ++r) at += v_.from_world[4 * a + r] * p[r];
+      const double half = radius / voxel_[a], last = v_.size[a] - 1;
+      low[a] = std::min(low[a], int(std::clamp(std::floor(at - half), 0.0, last)));
+      high[a] = std::max(high[a], int(std::clamp(std::ceil(at + half), 0.0, last)));
+    }
+  }
   /// Two opposite corners of the vessel's box in world coordinates, with a margin of three voxels.
   std::pair<Vec3, Vec3> box() const {
     int low[3] = {1 << 30, 1 << 30, 1 << 30}, high[3] = {-1, -1, -1};
@@ -252,6 +263,9 @@ class VesselVolume {
             const int at[3] = {i, j, k};
             for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], at[a]), high[a] = std::max(high[a], at[a]);
           }
+    for (const Stroke& s : o_.paint)
+      for (const Point& p : s.points)
+        if (!s.erase) extend(low, high, p, s.radius_mm);
     if (high[0] < 0)
       fail(file_, o_.label ? fmt::format("has no voxel of label {}; {}", *o_.label, labels_there(v_))
                            : fmt::format("nothing reaches the threshold {:g}; values run from {:g} to {:g}", level_,
@@ -283,9 +297,16 @@ TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::Ni
                           std::vector<Note>& notes, std::vector<Plane>& ends) {
   const VesselVolume vessel(file, v, o);
   const Grid grid = vessel.grid(notes);
-  const Mask mask = vessel_part(grid, vessel.sampled(grid), o, notes);
+  Mask all = vessel.sampled(grid);
+  paint(grid, all, o.paint);
+  const Mask mask = vessel_part(grid, all, o, notes);
   const Mask solid = mesh_tool::fill_holes(grid, mask);
   if (solid != mask) notes.push_back({Note::Kind::repair, "Voids inside of the vessel were filled.", ""});
+  if (!o.paint.empty())
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("The author has changed the vessel by hand with {} stroke{}.", o.paint.size(),
+                                 o.paint.size() == 1 ? "" : "s"),
+                     ""});
   Field inside = mesh_tool::signed_distance(grid, solid);
   const double coarse = vessel.coarse();
   mesh_tool::smooth(grid, inside, std::max(0.01, o.smoothing * coarse));

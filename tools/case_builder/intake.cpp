@@ -228,8 +228,8 @@ Intake take_in(const fs::path& input, const Options& given, Progress& progress, 
     with_ends.cuts.insert(with_ends.cuts.end(), o.cuts.begin(), o.cuts.end());
   } else {
     with_ends.cuts = o.cuts;
-    if (o.label || o.threshold || o.around)
-      fail(input, "is a surface; --label, --threshold and --around are for volumes");
+    if (o.label || o.threshold || o.around || !o.paint.empty())
+      fail(input, "is a surface; --label, --threshold, --around and --paint are for volumes");
     m = read_surface_mm(input, o, notes);
   }
   progress.step("mending the surface");

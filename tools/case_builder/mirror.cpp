@@ -28,6 +28,8 @@ Options as_read(Options o) {
   // Both numbers of x: of a point and its normal, or of two points.
   const auto both = [](std::array<double, 6>& a) { flip(a[0]), flip(a[3]); };
   for (Plane& cut : o.cuts) both(cut);
+  for (Stroke& stroke : o.paint)
+    for (Point& p : stroke.points) flip(p[0]);
   if (o.neck) both(*o.neck);
   if (o.neck_points) both(*o.neck_points);
   return o;

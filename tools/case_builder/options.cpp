@@ -19,7 +19,20 @@ void take(const Json& json, const char* name, T& value) {
   if (json.contains(name)) value = json[name].get<T>();
 }
 
+Json strokes_json(const std::vector<Stroke>& strokes) {
+  Json out = Json::array();
+  for (const Stroke& s : strokes) out.push_back({{"erase", s.erase}, {"radius_mm", s.radius_mm}, {"points", s.points}});
+  return out;
+}
+
 }  // namespace
+
+std::vector<Stroke> strokes_from_json(const Json& json) {
+  std::vector<Stroke> out;
+  for (const Json& s : json.get<std::vector<Json>>())
+    out.push_back({s.at("erase"), s.at("radius_mm"), s.at("points").get<std::vector<Point>>()});
+  return out;
+}
 
 Json to_json(const Options& o) {
   Json j = Json::object();
@@ -30,6 +43,7 @@ Json to_json(const Options& o) {
   put(j, "label", o.label);
   put(j, "seed", o.seed);
   put(j, "around", o.around);
+  if (!o.paint.empty()) j["paint"] = strokes_json(o.paint);
   j["keep_largest"] = o.keep_largest;
   put(j, "rebuild", o.rebuild);
   j["cuts"] = o.cuts;
@@ -74,6 +88,7 @@ Options options_from_json(const Json& j) {
     take(j, "label", o.label);
     take(j, "seed", o.seed);
     take(j, "around", o.around);
+    if (j.contains("paint")) o.paint = strokes_from_json(j["paint"]);
     take(j, "keep_largest", o.keep_largest);
     take(j, "rebuild", o.rebuild);
     take(j, "cuts", o.cuts);

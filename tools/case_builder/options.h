@@ -15,6 +15,13 @@ using Point = std::array<double, 3>;
 using Plane = std::array<double, 6>;  ///< a point and a normal
 using Json = nlohmann::ordered_json;
 
+/// A line along which something was painted or erased, with a ball for a brush; mm.
+struct Stroke {
+  bool erase = false;
+  double radius_mm = 1;
+  std::vector<Point> points;
+};
+
 /// Lengths in millimetres, positions in the frame of the input after its unit has been applied, before it is mirrored.
 struct Options {
   // intake
@@ -25,6 +32,7 @@ struct Options {
   std::optional<int> label;         ///< of a label volume
   std::optional<Point> seed;        ///< the piece nearest to this point is the vessel; by default the largest
   std::optional<double> around;     ///< of a volume: what is farther from the seed along an axis is left out
+  std::vector<Stroke> paint;        ///< of a volume: painted into the vessel, or erased
   bool keep_largest = false;        ///< even when other pieces are large
   std::optional<double> rebuild;    ///< a surface is made anew from a grid of that spacing
   std::vector<Plane> cuts;  ///< what lies beyond is cut off and the opening closed; the normal points to what goes
@@ -60,6 +68,8 @@ struct Options {
 };
 
 Json to_json(const Options& options);
+/// Throws nlohmann::json::exception.
+std::vector<Stroke> strokes_from_json(const Json& json);
 /// Throws InputError when the text is none of ours.
 Options options_from_json(const Json& json);
 

@@ -12,6 +12,7 @@
 #include "core/testing/example.h"
 #include "tools/case_builder/inspect.h"
 #include "tools/case_builder/intake.h"
+#include "tools/case_builder/paint.h"
 #include "tools/case_builder/scan_look.h"
 #include "tools/case_builder/shapes_for_test.h"
 #include "tools/case_builder/volume_input.h"
@@ -234,6 +235,33 @@ TEST_F(Scan, OnlyWhatIsNearTheSeedIsTaken) {
   EXPECT_THROW(take_in(folder.path() / "tube.nii", o, quiet), InputError);
   o.seed.reset();
   EXPECT_THROW(take_in(folder.path() / "tube.nii", o, quiet), InputError);
+}
+
+/// A branch is painted onto the tube, and the sac is erased.
+TEST_F(Scan, StrokesArePaintedAndErased) {
+  folder.write("tube.nii",
+               test::nifti_text({54, 64, 32}, 0.3, [](int i, int j, int k) { return test::tube_label(i, j - 30, k); }));
+  folder.write("paint.json",
+               R"([{"erase": false, "radius_mm": 1.2, "points": [[4, 12.6, 2.4], [4, 6, 2.4], [4, 1, 2.4]]},
+                   {"erase": true, "radius_mm": 2.6, "points": [[8, 12.6, 6.4]]}])");
+  Options o;
+  o.label = 1;
+  o.paint = read_strokes(folder.path() / "paint.json");
+  EXPECT_EQ(to_json(options_from_json(to_json(o))), to_json(o));
+  for (const bool mirrored : {false, true}) {
+    o.mirror = mirrored;
+    const Intake in = take_in(folder.path() / "tube.nii", o, quiet);
+    Vec3 low = Vec3::Constant(1e9), high = -low;
+    for (const Vec3& p : in.surface.mesh.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    EXPECT_NEAR(low.y(), -0.2, 0.5) << "the branch";
+    EXPECT_LT(high.z(), 5) << "the sac was 8.2 mm high";
+    EXPECT_NE(to_json(in.notes).dump().find("by hand with 2 strokes"), std::string::npos);
+  }
+  for (const char* wrong : {"{}", "[1]", R"([{"erase": true, "radius_mm": 99, "points": [[0, 0, 0]]}])",
+                            R"([{"erase": true, "radius_mm": 1, "points": []}])"}) {
+    folder.write("paint.json", wrong);
+    EXPECT_THROW(read_strokes(folder.path() / "paint.json"), InputError) << wrong;
+  }
 }
 
 TEST_F(Scan, AVesselWithoutOpeningsIsShownSoThatItCanBeCut) {

@@ -140,7 +140,7 @@ void Studio::read_surface(StudioProject& p) {
   fs::remove_all(folder / "inspect.part", ignored);
   std::vector<std::string> command{(places_.programs / "insula_case").string(), "inspect", (folder / p.input).string(),
                                    "--out", (folder / "inspect.part").string()};
-  const std::vector<std::string> more = intake_words(p.choices());
+  const std::vector<std::string> more = with_strokes(intake_words(p.choices()), p, folder);
   command.insert(command.end(), more.begin(), more.end());
   const int number = p.work.contains("inspect") ? p.work["inspect"].value("number", 0) : 0;
   p.work["inspect"] = {{"state", "running"}, {"error", ""}, {"number", number + 1}};
@@ -165,7 +165,7 @@ ApiAnswer Studio::build(StudioProject& p) {
                                    (folder / p.input).string(),
                                    "--out",
                                    (folder / name).string()};
-  const std::vector<std::string> more = case_words(p.choices());
+  const std::vector<std::string> more = with_strokes(case_words(p.choices()), p, folder);
   command.insert(command.end(), more.begin(), more.end());
   p.work["builds"] = number;
   p.work["build"] = {{"state", "running"}, {"error", ""}, {"folder", name}, {"choices", p.choices()}};
@@ -244,12 +244,14 @@ void Studio::look() {
 }
 
 ApiAnswer Studio::change(StudioProject& p, std::string_view path, const Json& body) {
-  const std::vector<std::string> before = intake_words(p.choices());
+  const auto reading = [](const StudioProject& of) {
+    return std::pair(intake_words(of.choices()), of.choices()["paint"]);
+  };
   StudioProject next = p;
   if (path == "choose") choose(next, changed_choices(p.choices(), body.value("choices", Json())));
   if (path == "undo" && next.at > 0) --next.at;
   if (path == "redo" && next.at + 1 < next.history.size()) ++next.at;
-  const bool anew = intake_words(next.choices()) != before;
+  const bool anew = reading(next) != reading(p);
   if (anew && jobs_.count(p.name) && !job(p.name, Kind::inspect))
     return refusal(409, "the case is at work; wait, or cancel it");
   if (anew) inspect(next);

@@ -17,6 +17,7 @@ using Json = nlohmann::json;
 
 constexpr double far_away = 1e6;  // mm
 constexpr std::size_t most_cuts = 12;
+constexpr std::size_t most_strokes = 100, most_points = 200;
 
 bool is_number(const Json& v, double least, double most) {
   return v.is_number() && std::isfinite(v.get<double>()) && v.get<double>() >= least && v.get<double>() <= most;
@@ -39,6 +40,17 @@ bool is_neck(const Json& v) {
 
 bool are_cuts(const Json& v) {
   return v.is_array() && v.size() <= most_cuts && std::all_of(v.begin(), v.end(), is_plane);
+}
+
+bool is_stroke(const Json& v) {
+  return v.is_object() && v.size() == 3 && v.contains("erase") && v["erase"].is_boolean() && v.contains("radius_mm") &&
+         is_number(v["radius_mm"], 0.1, 20) && v.contains("points") && v["points"].is_array() && !v["points"].empty() &&
+         v["points"].size() <= most_points &&
+         std::all_of(v["points"].begin(), v["points"].end(), [](const Json& p) { return are_numbers(p, 3); });
+}
+
+bool are_strokes(const Json& v) {
+  return v.is_array() && v.size() <= most_strokes && std::all_of(v.begin(), v.end(), is_stroke);
 }
 
 bool is_one_of(const Json& v, std::initializer_list<const char*> values) {
@@ -72,6 +84,7 @@ const std::map<std::string, Rule>& rules() {
       {"around_mm",
        {[](const Json& v) { return v.is_null() || is_number(v, 5, 200); },
         "the part around the seed is from 5 to 200 mm"}},
+      {"paint", {are_strokes, "there are 100 strokes at most, each with a radius and 1 to 200 points"}},
       {"neck", {is_neck, "a neck has a point and a direction, or two points"}},
       {"inlet", {[](const Json& v) { return v.is_null() || are_numbers(v, 3); }, "the inlet is a point"}},
       {"rebuild_mm",
@@ -103,11 +116,13 @@ std::string plane(const Json& v) {
 }  // namespace
 
 Json first_choices() {
-  return {{"threshold", nullptr}, {"label", nullptr},    {"seed", nullptr},       {"around_mm", nullptr},
-          {"unit", ""},           {"mirror", false},     {"any_size", false},     {"cuts", Json::array()},
-          {"neck", nullptr},      {"inlet", nullptr},    {"rebuild_mm", nullptr}, {"keep_mm", 13},
-          {"vertices", 1650},     {"spin_deg", nullptr}, {"rehearse", true},      {"plays", 16},
-          {"site", ""},           {"difficulty", 0}};
+  return {{"paint", Json::array()}, {"threshold", nullptr}, {"label", nullptr},
+          {"seed", nullptr},        {"around_mm", nullptr}, {"unit", ""},
+          {"mirror", false},        {"any_size", false},    {"cuts", Json::array()},
+          {"neck", nullptr},        {"inlet", nullptr},     {"rebuild_mm", nullptr},
+          {"keep_mm", 13},          {"vertices", 1650},     {"spin_deg", nullptr},
+          {"rehearse", true},       {"plays", 16},          {"site", ""},
+          {"difficulty", 0}};
 }
 
 Json changed_choices(Json choices, const Json& changes) {
@@ -132,6 +147,7 @@ std::vector<std::string> intake_words(const Json& c) {
   if (!c["seed"].is_null()) out.insert(out.end(), {"--seed", place(c["seed"])});
   if (!c["seed"].is_null() && !c["around_mm"].is_null())
     out.insert(out.end(), {"--around", fmt::format("{:g} mm", c["around_mm"].get<double>())});
+  if (!c["paint"].empty()) out.insert(out.end(), {"--paint", paint_file});
   if (c["mirror"] == true) out.emplace_back("--mirror");
   if (c["any_size"] == true) out.emplace_back("--any-size");
   if (!c["rebuild_mm"].is_null())

@@ -8,12 +8,17 @@
 namespace insula::gateway {
 
 /// All of them, as they are for a new case:
-/// {unit, mirror, any_size, cuts: [[6]], neck: null | {plane: [6]} | {points: [6]}, inlet: null | [3],
-///  rebuild_mm: null | number, keep_mm, vertices, spin_deg: null | number, rehearse, plays, site, difficulty}
+/// {threshold: null | number, label: null | number, seed: null | [3], around_mm: null | number,
+///  paint: [{erase, radius_mm, points: [[3]]}], unit, mirror, any_size, cuts: [[6]], neck: null | {plane: [6]} |
+///  {points: [6]}, inlet: null | [3], rebuild_mm: null | number, keep_mm, vertices, spin_deg: null | number, rehearse,
+///  plays, site, difficulty}
 nlohmann::json first_choices();
 
 /// Choices with some of them changed. Throws InputError, which says for the author what is wrong.
 nlohmann::json changed_choices(nlohmann::json choices, const nlohmann::json& changes);
+
+/// Of the project's folder, with the strokes for the case builder.
+inline constexpr const char* paint_file = "paint.json";
 
 /// Options of `insula case` that say the same: those of its stage intake, and all.
 std::vector<std::string> intake_words(const nlohmann::json& choices);

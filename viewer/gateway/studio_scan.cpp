@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "viewer/gateway/studio_scan.h"
 
+#include <algorithm>
 #include <fstream>
 
 #include "core/base/input_error.h"
 #include "core/model/formats/file_bytes.h"
 #include "viewer/gateway/json_input.h"
+#include "viewer/gateway/replace_file.h"
 #include "viewer/gateway/studio.h"
+#include "viewer/gateway/studio_choices.h"
 
 namespace insula::gateway {
 namespace fs = std::filesystem;
@@ -37,6 +40,15 @@ bool is_scan(const StudioProject& p) { return p.work.contains("scan"); }
 bool scan_is_read(const StudioProject& p) { return is_scan(p) && text_of(p.work["scan"], "state") == "done"; }
 bool has_level(const StudioProject& p) {
   return !p.choices()["threshold"].is_null() || !p.choices()["label"].is_null();
+}
+
+std::vector<std::string> with_strokes(std::vector<std::string> words, const StudioProject& p, const fs::path& folder) {
+  const Json& strokes = p.choices()["paint"];
+  if (strokes.empty()) return words;
+  if (!replace_file(folder / paint_file, strokes.dump() + "\n"))
+    throw InputError("the project cannot be written: is the disk full?");
+  std::replace(words.begin(), words.end(), std::string(paint_file), (folder / paint_file).string());
+  return words;
 }
 
 fs::path scan_file(const fs::path& folder, const char* extension) {

@@ -24,6 +24,9 @@ bool is_scan(const StudioProject& project);
 bool scan_is_read(const StudioProject& project);
 /// Whether the author has said what in the scan is vessel.
 bool has_level(const StudioProject& project);
+/// The words of a command, for the program: with the strokes in a file of the folder. Throws InputError.
+std::vector<std::string> with_strokes(std::vector<std::string> words, const StudioProject& project,
+                                      const std::filesystem::path& project_folder);
 /// Of what the page sees of the scan, ".json" and ".raw".
 std::filesystem::path scan_file(const std::filesystem::path& project_folder, const char* extension);
 

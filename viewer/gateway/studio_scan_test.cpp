@@ -98,6 +98,26 @@ TEST_F(StudioScan, IsReadOnceAndTheAuthorsFileGoes) {
   EXPECT_TRUE(project(name)["inspect"]["facts"].is_null());
 }
 
+TEST_F(StudioScan, StrokesAreGivenToTheBuilder) {
+  const std::string name = upload("scan.nii", nifti())["name"];
+  wait(name, "scan");
+  const json stroke{{"erase", false}, {"radius_mm", 1.5}, {"points", {{1, 2, 3}, {2, 2, 3}}}};
+  EXPECT_EQ(ask("choose", name, {{"choices", {{"threshold", 9}, {"paint", {stroke}}}}}).status, 200);
+  wait(name, "inspect");
+  EXPECT_EQ(json::parse(text(in(name) / "paint.json")), json{stroke});
+  EXPECT_NE(text(folder_.path() / "bin/asked").find("--paint " + (in(name) / "paint.json").string()),
+            std::string::npos);
+  ask("choose", name, {{"choices", {{"paint", {stroke, stroke}}}}});
+  const json now = wait(name, "inspect");
+  EXPECT_EQ(now["inspect"]["number"], 2) << "another stroke is another surface";
+  EXPECT_NE(now["command"].get<std::string>().find("--paint paint.json"), std::string::npos);
+  json wrong = stroke;
+  wrong["points"] = {{1, 2}};
+  EXPECT_EQ(ask("choose", name, {{"choices", {{"paint", {wrong}}}}}).status, 400);
+  wrong["points"] = json::array();
+  EXPECT_EQ(ask("choose", name, {{"choices", {{"paint", {wrong}}}}}).status, 400);
+}
+
 TEST_F(StudioScan, ARefusedOneGoes) {
   behave("refuse");
   const std::string name = upload("series.zip", "PK\x03\x04")["name"];

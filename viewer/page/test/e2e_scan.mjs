@@ -136,6 +136,26 @@ try {
   assert.ok(p.inspect.facts.size_mm[0] > 25, JSON.stringify(p.inspect.facts.size_mm));
   assert.match(p.inspect.facts.problem, /cut its ends/);
 
+  // A bridge from the parent to the speck is painted with the brush, and taken back.
+  await page.getByLabel('A drag in a slice').selectOption('paint');
+  const whole = await found(page);
+  await axial.focus();
+  for (let k = 0; k < 20; k++) await page.keyboard.press('ArrowUp');
+  const at = (x, y) => [image.x + image.width / 2 - x * scale, image.y + image.height / 2 - y * scale];
+  await page.mouse.move(...at(-5, 0));
+  await page.mouse.down();
+  for (let y = 0; y >= -8; y -= 2) await page.mouse.move(...at(-5, y));
+  await page.mouse.up();
+  p = await surface(page, (c) => c.paint.length === 1);
+  const bridged = await found(page);
+  assert.ok(bridged.kept > whole.kept + 200, `${bridged.kept} after ${whole.kept}`);
+  assert.ok(p.inspect.facts.size_mm[1] > 22, `the branch and the stroke span ${p.inspect.facts.size_mm[1]} mm`);
+  await shot(page, 'painted');
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await surface(page, (c) => c.paint.length === 0);
+  assert.equal((await found(page)).kept, whole.kept);
+  check('what is missing is painted with a brush, and taken back');
+
   await page.getByRole('button', { name: 'Surface', exact: true }).click();
   await page.waitForFunction(() => window.__studio.ready(), null, patience);
   await page.waitForTimeout(500);

@@ -22,6 +22,8 @@ const whole = (size: Vec, more: Partial<Wanted> = {}): Wanted => ({
   seed: null,
   from: [0, 0, 0],
   to: size.map((n) => n - 1) as Vec,
+  strokes: [],
+  spacing: [1, 1, 1],
   ...more,
 });
 
@@ -87,6 +89,22 @@ it('chooses a label and a part', () => {
   const near = vesselGrid(labels, [20, 10, 10], whole([20, 10, 10], { label: 2, from: [3, 0, 0], to: [8, 9, 9] }));
   expect(near.size).toEqual([6, 10, 10]);
   expect(near.part.filter((p) => p === 1).length).toBe(400);
+});
+
+it('paints and erases balls along lines', () => {
+  const volume = 9 * Math.PI * 20 + (4 / 3) * Math.PI * 27;
+  const points: Vec[] = [
+    [15, 15, 15],
+    [35, 15, 15],
+  ];
+  const empty = whole(size, { threshold: 1e6, strokes: [{ erase: false, radius: 3, points }] });
+  const kept = (w: Wanted) => vesselGrid(balls, size, w).part.reduce((n, p) => n + (p === 1 ? 1 : 0), 0);
+  expect(Math.abs(kept(empty) / volume - 1)).toBeLessThan(0.15); // nodes on the border are not inside
+  expect(Math.abs(kept({ ...empty, spacing: [1, 1, 0.5] }) / (2 * volume) - 1)).toBeLessThan(0.15);
+  expect(kept({ ...empty, strokes: [...empty.strokes, { erase: true, radius: 4, points }] })).toBe(0);
+  // A bridge makes one piece of two.
+  const plain = kept(whole(size));
+  expect(kept(whole(size, { strokes: empty.strokes }))).toBeGreaterThan(plain + 900);
 });
 
 /** A move of the threshold looks at each node once, at those of vessels twice more, and at no more than so many. */

@@ -43,6 +43,13 @@ export interface Facts {
 
 export type Neck = { plane: number[] } | { points: number[] } | null;
 
+/** A line along which something was painted or erased, mm. */
+export interface Stroke {
+  erase: boolean;
+  radius_mm: number;
+  points: Point[];
+}
+
 export interface Choices {
   /** Of a scan: vessel from here up. */
   threshold: number | null;
@@ -50,6 +57,7 @@ export interface Choices {
   seed: Point | null;
   /** Of the scan, only so much around the seed. */
   aroundMm: number | null;
+  paint: Stroke[];
   /** A point and the direction of what goes, each. */
   cuts: number[][];
   unit: string;
@@ -133,6 +141,11 @@ function choicesOf(value: unknown): Choices {
     label: numberOrNull(c.label),
     seed: pointOrNull(c.seed),
     aroundMm: numberOrNull(c.around_mm),
+    paint: list(c.paint).map((s) => ({
+      erase: s.erase === true,
+      radius_mm: number(s.radius_mm),
+      points: Array.isArray(s.points) ? s.points.map(point) : [],
+    })),
     cuts: Array.isArray(c.cuts) ? c.cuts.map(numbers) : [],
     unit: text(c.unit),
     mirror: c.mirror === true,

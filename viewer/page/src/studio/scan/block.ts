@@ -105,13 +105,14 @@ export class Block {
     const { m } = this;
     return [0, 4, 8].map((r) => m[r]! * i + m[r + 1]! * j + m[r + 2]! * k + m[r + 3]!) as Vec;
   }
-  /** Of the nearest voxel. */
-  voxel(p: readonly number[]): Vec {
+  /** Of a place, in voxels and parts of them. */
+  inVoxels(p: readonly number[]): Vec {
     const d = [0, 1, 2].map((r) => p[r]! - this.m[4 * r + 3]!);
-    return [0, 1, 2].map((a) => {
-      const at = this.back[3 * a]! * d[0]! + this.back[3 * a + 1]! * d[1]! + this.back[3 * a + 2]! * d[2]!;
-      return Math.min(this.size[a]! - 1, Math.max(0, Math.round(at)));
-    }) as Vec;
+    return [0, 3, 6].map((a) => this.back[a]! * d[0]! + this.back[a + 1]! * d[1]! + this.back[a + 2]! * d[2]!) as Vec;
+  }
+  /** The nearest one. */
+  voxel(p: readonly number[]): Vec {
+    return this.inVoxels(p).map((x, a) => Math.min(this.size[a]! - 1, Math.max(0, Math.round(x)))) as Vec;
   }
   /** First and last voxel within `mm` of a point along each axis; all without a point. */
   around(p: readonly number[] | null, mm: number | null): [Vec, Vec] {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the views of a scan show in common.
-import type { Choices } from '../api';
+import type { Choices, Stroke } from '../api';
 import type { Block, Vec } from './block';
 import type { Preview } from './preview.worker';
 import type { Wanted } from './vessel_grid';
@@ -8,6 +8,7 @@ import type { Wanted } from './vessel_grid';
 /** Share of the voxels that may be darker or brighter than what the window shows. */
 const dark = 0.02;
 const bright = 0.999;
+const mostPoints = 200; // of a stroke
 
 export class ScanState {
   /** The voxel at which all three slices meet. */
@@ -20,10 +21,16 @@ export class ScanState {
   seed: Vec | null = null;
   aroundMm: number | null = null;
   found: Preview | null = null;
+  paint: Stroke[] = [];
+  /** What a drag does; null: it moves the crosshair. */
+  brush: { erase: boolean; radiusMm: number } | null = null;
+  /** The stroke that is being drawn. */
+  private drawn: Stroke | null = null;
 
   constructor(
     readonly block: Block,
     private readonly changed: () => void,
+    private readonly painted: (strokes: Stroke[]) => void,
   ) {
     this.cross = block.size.map((n) => Math.floor(n / 2)) as Vec;
     this.threshold = block.facts.threshold;
@@ -33,7 +40,8 @@ export class ScanState {
   }
 
   /** Takes what is chosen. */
-  take({ threshold, label, seed, aroundMm }: Choices): void {
+  take({ threshold, label, seed, aroundMm, paint }: Choices): void {
+    this.paint = paint;
     if (threshold !== null) this.threshold = threshold;
     this.label = label;
     const moved = seed && String(seed) !== String(this.seed);
@@ -47,6 +55,28 @@ export class ScanState {
   move(axis: number, to: number): void {
     this.cross[axis] = Math.min(this.block.size[axis]! - 1, Math.max(0, Math.round(to)));
     this.changed();
+  }
+
+  /** The brush goes over the crosshair. */
+  stroke(): void {
+    if (!this.brush) return;
+    const p = this.block.world(this.cross);
+    this.drawn ??= { erase: this.brush.erase, radius_mm: this.brush.radiusMm, points: [] };
+    const { points, radius_mm: radius } = this.drawn;
+    const last = points[points.length - 1];
+    const away = last ? Math.hypot(...p.map((x, a) => x - last[a]!)) : Infinity;
+    if (away < radius / 3 || points.length >= mostPoints) return;
+    points.push(p);
+    this.changed();
+  }
+
+  /** The brush is lifted. */
+  strokeEnds(): void {
+    const { drawn } = this;
+    this.drawn = null;
+    if (!drawn) return;
+    this.paint = [...this.paint, drawn];
+    this.painted(this.paint);
   }
 
   window(low: number, high: number): void {
@@ -63,6 +93,12 @@ export class ScanState {
       seed: this.seed && this.block.voxel(this.seed),
       from,
       to,
+      strokes: [...this.paint, ...(this.drawn ? [this.drawn] : [])].map((s) => ({
+        erase: s.erase,
+        radius: s.radius_mm,
+        points: s.points.map((p) => this.block.inVoxels(p)),
+      })),
+      spacing: this.block.spacing,
     };
   }
 

@@ -6,6 +6,7 @@ import type { Project, StudioApi } from '../api';
 import type { Asks } from '../editor';
 import { forThePage, reason } from '../wording';
 import { Block, type ScanFacts } from './block';
+import { BrushPanel } from './brush_panel';
 import { ScanPanel } from './scan_panel';
 import { ScanView } from './scan_view';
 
@@ -16,6 +17,7 @@ export class ScanStep {
   private readonly say = el('p', { role: 'status' });
   private readonly again = el('button', { type: 'button' }, text('Try again'));
   private panel: ScanPanel | null = null;
+  private brush: BrushPanel | null = null;
   private shown: ScanView | null = null;
   private loading = false;
   private ended = false;
@@ -54,6 +56,7 @@ export class ScanStep {
     this.choices = JSON.stringify(p.choices);
     this.shown?.state.take(p.choices);
     this.panel?.show(p.choices);
+    this.brush?.show(p.choices);
   }
 
   private async load(p: Project, facts: ScanFacts): Promise<void> {
@@ -62,10 +65,15 @@ export class ScanStep {
     try {
       const bytes = await (await fetch(this.api.file(p.name, 'scan', 1))).arrayBuffer();
       if (this.ended) return;
-      this.shown = new ScanView(Block.of(facts, bytes), () => this.panel?.follow());
+      this.shown = new ScanView(
+        Block.of(facts, bytes),
+        () => this.panel?.follow(),
+        (paint) => this.asks.choose({ paint }),
+      );
       this.panel = new ScanPanel(this.asks, facts, this.shown.state);
       this.view.replaceChildren(this.shown.root);
-      this.root.append(this.panel.root);
+      this.brush = new BrushPanel(this.asks, this.shown.state);
+      this.root.append(this.panel.root, this.brush.root);
       this.root.firstElementChild!.toggleAttribute('hidden', true);
       this.take(p);
     } catch (e) {

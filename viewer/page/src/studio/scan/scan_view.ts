@@ -2,6 +2,7 @@
 // Three slices of a scan and the vessel in it. The vessel is found in a worker; of several moves only the last one
 // counts.
 import { el } from '../../hud/dom';
+import type { Stroke } from '../api';
 import type { Block } from './block';
 import { PreviewView } from './preview_view';
 import type { Ask, Preview } from './preview.worker';
@@ -23,8 +24,9 @@ export class ScanView {
     block: Block,
     /** The crosshair or the window has moved. */
     private readonly moved: () => void,
+    painted: (strokes: Stroke[]) => void,
   ) {
-    this.state = new ScanState(block, () => this.changed());
+    this.state = new ScanState(block, () => this.changed(), painted);
     this.slices = ([2, 1, 0] as const).map((axis) => new SliceView(axis, this.state));
     this.preview = new PreviewView(block);
     this.root = el('div', { class: 'scan' }, ...this.slices.map((s) => s.root), this.preview.root);

@@ -3,7 +3,7 @@
 // is coloured.
 import { el } from '../../hud/dom';
 import { text } from '../../languages/text';
-import type { Block } from './block';
+import type { Block, Vec } from './block';
 import type { ScanState } from './scan_state';
 
 /** Axes of the page's directions, and letters of its sides. */
@@ -41,6 +41,8 @@ export class SliceView {
     this.canvas.addEventListener('contextmenu', (e) => e.preventDefault());
     this.canvas.addEventListener('pointerdown', (e) => this.pressed(e));
     this.canvas.addEventListener('pointermove', (e) => this.moved(e));
+    for (const end of ['pointerup', 'pointercancel'] as const)
+      this.canvas.addEventListener(end, () => this.state.strokeEnds());
   }
 
   private wheel(e: WheelEvent): void {
@@ -49,6 +51,11 @@ export class SliceView {
   }
 
   private key(e: KeyboardEvent): void {
+    if (e.key === ' ' || e.key === 'Enter') {
+      e.preventDefault();
+      this.state.stroke();
+      return this.state.strokeEnds();
+    }
     const [at, last] = [this.state.cross[this.axis], this.state.block.size[this.axis] - 1];
     const to: Record<string, number> = {
       ArrowUp: at + 1,
@@ -89,6 +96,7 @@ export class SliceView {
     const [u, v] = [1 - (px - x) / width, 1 - (py - y) / height];
     state.move(view.u, u * state.block.size[view.u] - 0.5);
     state.move(view.v, v * state.block.size[view.v] - 0.5);
+    state.stroke();
   }
 
   private readonly ratio = (box: DOMRect) => (box.width > 0 ? this.canvas.width / box.width : 1);
@@ -135,6 +143,8 @@ export class SliceView {
     const at: [number, number, number] = [...this.state.cross];
     const wanted = this.state.wanted();
     const [low, high] = [block.storedOf(this.state.low), block.storedOf(this.state.high)];
+    // What was painted is known on the nodes of the preview.
+    const painted = wanted.strokes.length > 0 && this.state.found !== null;
     let to = 0;
     for (let y = nv - 1; y >= 0; y--)
       for (let x = nu - 1; x >= 0; x--, to += 4) {
@@ -143,22 +153,24 @@ export class SliceView {
         const stored = block.stored[block.index(...at)]!;
         const grey = Math.min(255, Math.max(0, (255 * (stored - low)) / (high - low)));
         const vessel = wanted.label === null ? stored >= wanted.threshold : stored === wanted.label;
-        const colour = vessel ? this.colour(at, wanted.from, wanted.to) : null;
+        const colour = vessel || painted ? this.colour(at, wanted.from, wanted.to, painted) : null;
         for (let c = 0; c < 3; c++) pixels.data[to + c] = colour ? grey * (1 - tint) + colour[c]! * tint : grey;
         pixels.data[to + 3] = 255;
       }
     context.putImageData(pixels, 0, 0);
   }
 
-  /** Of a voxel above the threshold; null: outside of the part that is taken. */
-  private colour(at: readonly number[], from: readonly number[], to: readonly number[]): number[] | null {
+  /** Of a voxel above the threshold, or by its node alone; null: outside of the part that is taken. */
+  private colour(at: Readonly<Vec>, from: Readonly<Vec>, to: Readonly<Vec>, byNode: boolean): number[] | null {
     for (let a = 0; a < 3; a++) if (at[a]! < from[a]! || at[a]! > to[a]!) return null;
     const grid = this.state.found?.grid;
     if (!grid) return kept;
     const node = at.map((x, a) =>
       Math.min(grid.size[a]! - 1, Math.max(0, Math.floor((x - grid.from[a]!) / grid.step))),
     );
-    return grid.part[node[0]! + grid.size[0] * (node[1]! + grid.size[1] * node[2]!)] === 2 ? left : kept;
+    const part = grid.part[node[0]! + grid.size[0] * (node[1]! + grid.size[1] * node[2]!)];
+    if (byNode && part === 0) return null;
+    return part === 2 ? left : kept;
   }
 
   private marks(context: CanvasRenderingContext2D, f: ReturnType<SliceView['frame']>, ratio: number): void {

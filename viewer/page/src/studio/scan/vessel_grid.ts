@@ -14,6 +14,10 @@ export interface Wanted {
   seed: Vec | null;
   from: Vec;
   to: Vec;
+  /** In voxels, radii in mm. */
+  strokes: { erase: boolean; radius: number; points: Vec[] }[];
+  /** Sides of a voxel, mm. */
+  spacing: Vec;
 }
 
 export const mostNodes = 144;
@@ -54,6 +58,39 @@ function sampled(stored: Stored, size: Vec, w: Wanted, grid: VesselGrid): void {
         const over = w.label === null ? (most - w.threshold) * soft : most - 0.5;
         level[n] = over === 0 ? 1e-6 : Math.min(1, Math.max(-1, over));
       }
+}
+
+/** Sets or clears what lies within a stroke's radius of the line between two of its points. */
+function paintLine(grid: VesselGrid, w: Wanted, stroke: Wanted['strokes'][number], ends: readonly [Vec, Vec]): void {
+  const inner = (grid.step - 1) / 2;
+  const node = (p: Vec) => p.map((x, a) => (x - grid.from[a]! - inner) / grid.step) as Vec;
+  const mm = w.spacing.map((s) => s * grid.step) as Vec;
+  const [a, b] = [node(ends[0]), node(ends[1])];
+  const along = b.map((x, k) => (x - a[k]!) * mm[k]!) as Vec;
+  const length2 = along[0] ** 2 + along[1] ** 2 + along[2] ** 2;
+  const range = [0, 1, 2].map((k) => {
+    const half = stroke.radius / mm[k]! + 1;
+    const from = Math.max(0, Math.ceil(Math.min(a[k]!, b[k]!) - half));
+    return [from, Math.min(grid.size[k]! - 1, Math.floor(Math.max(a[k]!, b[k]!) + half))] as const;
+  });
+  const [ri, rj, rk] = range as [readonly [number, number], readonly [number, number], readonly [number, number]];
+  const soft = Math.min(...mm);
+  for (let k = rk[0]; k <= rk[1]; k++)
+    for (let j = rj[0]; j <= rj[1]; j++)
+      for (let i = ri[0]; i <= ri[1]; i++) {
+        const p = [(i - a[0]) * mm[0], (j - a[1]) * mm[1], (k - a[2]) * mm[2]] as const;
+        const dot = p[0] * along[0] + p[1] * along[1] + p[2] * along[2];
+        const t = length2 > 0 ? Math.min(1, Math.max(0, dot / length2)) : 0;
+        const away = Math.hypot(p[0] - t * along[0], p[1] - t * along[1], p[2] - t * along[2]);
+        const inside = Math.min(1, Math.max(-1, (stroke.radius - away) / soft));
+        const n = i + grid.size[0] * (j + grid.size[1] * k);
+        grid.level[n] = stroke.erase ? Math.min(grid.level[n]!, -inside) : Math.max(grid.level[n]!, inside);
+      }
+}
+
+function paint(grid: VesselGrid, w: Wanted): void {
+  for (const stroke of w.strokes)
+    stroke.points.forEach((p, k) => paintLine(grid, w, stroke, [stroke.points[Math.max(0, k - 1)]!, p]));
 }
 
 /** Marks the nodes connected with `start`. Returns how many. */
@@ -136,6 +173,7 @@ export function vesselGrid(stored: Stored, size: Vec, wanted: Wanted): VesselGri
     work: count,
   };
   sampled(stored, size, wanted, grid);
+  paint(grid, wanted);
   keepOne(grid, wanted.seed);
   return grid;
 }
