@@ -35,7 +35,7 @@ TEST_P(ShippedCase, AnAngledClipClosesTheNeckAndSparesTheBranches) {
 }
 
 // Between the hemispheres: other lobes, another vessel, the same judgement.
-const std::filesystem::path pericallosal_scene = scenes / "cases/pericallosal/clipping.xml";
+const std::filesystem::path pericallosal_scene = scenes / "cases/pericallosal/case.xml";
 
 TEST(Pericallosal, AClipAcrossTheNeckSparesBothBranches) {
   test::ToldHints told;
