@@ -27,7 +27,7 @@ document
       'header',
       { class: 'top' },
       el('h1', {}, text('Insula studio')),
-      el('p', {}, text('Cases from vessels’ surfaces. For training only, never for the care of patients.')),
+      el('p', {}, text('Cases from scans and vessels’ surfaces. For training only, never for the care of patients.')),
       home,
       languageSelect(),
     ),
