@@ -23,8 +23,15 @@ void DeformableBody::start_retardation_times() {
                                         [&](const ForceModel* f) { return f->stiffness_damping() == slowest; });
 }
 
+void DeformableBody::find_retardation_times(const StepContext& context) {
+  if (retardation_times_known_) return;
+  free_motion(context);  // factorises A
+  weigh_retardation_times(context.h);
+  reset();  // the models keep no trace of having been linearised
+}
+
 // Uses the factor of a_. The spatial resolution is that of some dozens of unit loads.
-void DeformableBody::find_retardation_times(double h) {
+void DeformableBody::weigh_retardation_times(double h) {
   constexpr int unit_loads = 64;
   retardation_times_known_ = true;
   std::vector<BlockMatrix> stiffness(forces_.size(), a_);
