@@ -71,10 +71,13 @@ unsigned force(const ElementBatch& b, const ElementMaterial& m, ElementWork& wor
   for (int l = 0; l < batch_lanes; l += W) {
     const Strain e = strain_of(work, l);
     out |= lane_bits(e.norm2 > m.far2) << l;
-    const V volume = load(b.volume + l), two = 2 * m.mu * volume,
-            all_round = m.lambda * volume * e.trace - m.swelling_stress * volume;
-    const V t00 = two * e.e00 + all_round, t11 = two * e.e11 + all_round, t22 = two * e.e22 + all_round;
+    const V volume = load(b.volume + l), two = 2 * m.mu * volume, all_round = m.lambda * volume * e.trace;
+    V t00 = two * e.e00 + all_round, t11 = two * e.e11 + all_round, t22 = two * e.e22 + all_round;
     const V t01 = two * e.e01, t02 = two * e.e02, t12 = two * e.e12;
+    if (m.swelling_stress != 0) {  // apart, so that tissue that does not swell keeps its bits
+      const V swelling = m.swelling_stress * volume;
+      t00 -= swelling, t11 -= swelling, t22 -= swelling;
+    }
     for (int c = 0; c < 3; ++c) {
       const V r0 = load(work.r[3 * c] + l), r1 = load(work.r[3 * c + 1] + l), r2 = load(work.r[3 * c + 2] + l);
       const V p0 = r0 * t00 + r1 * t01 + r2 * t02, p1 = r0 * t01 + r1 * t11 + r2 * t12,
@@ -132,7 +135,9 @@ inline void spin_of(const ElementMaterial& m, const ElementWork& work, int l, bo
   V s[6], r[9];
   for (int k = 0; k < 6; ++k) s[k] = load(work.s[k] + l);
   for (int k = 0; k < 9; ++k) r[k] = load(work.r[k] + l);
-  const V trace = s[0] + s[1] + s[2], k = 2 * (2 * m.mu - m.lambda * (trace - 3) + m.swelling_stress);
+  const V trace = s[0] + s[1] + s[2];
+  V k = 2 * (2 * m.mu - m.lambda * (trace - 3));
+  if (m.swelling_stress != 0) k += 2 * m.swelling_stress;
   V h[6];
   if (positive) {
     V axis[3][3] = {{all(1), V{}, V{}}, {V{}, all(1), V{}}, {V{}, V{}, all(1)}};  // columns of the eigenvectors
