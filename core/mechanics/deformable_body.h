@@ -94,8 +94,6 @@ class DeformableBody : public DynamicBody {
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
   void add_rate(const BodyRows& rows, double* rate) const override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
-  /// Called once, when the scene is connected and the body at rest.
-  void find_retardation_times(const StepContext& context);
   double retardation_time(const MaterialPoint& p) const override;
   double retardation_time_of_node(int i) const { return retardation_time_[std::size_t(i)]; }  ///< s
   void reset() override;
@@ -141,7 +139,7 @@ class DeformableBody : public DynamicBody {
   void factorise(double h);
   void find_rotations();
   void start_retardation_times();
-  void weigh_retardation_times(double h);
+  void find_retardation_times(double h);
   struct Neighbours {
     int i, j;
     double distance2;  ///< at rest, m2

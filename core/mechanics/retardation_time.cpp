@@ -23,15 +23,8 @@ void DeformableBody::start_retardation_times() {
                                         [&](const ForceModel* f) { return f->stiffness_damping() == slowest; });
 }
 
-void DeformableBody::find_retardation_times(const StepContext& context) {
-  if (retardation_times_known_) return;
-  free_motion(context);  // factorises A
-  weigh_retardation_times(context.h);
-  reset();  // the models keep no trace of having been linearised
-}
-
 // Uses the factor of a_. The spatial resolution is that of some dozens of unit loads.
-void DeformableBody::weigh_retardation_times(double h) {
+void DeformableBody::find_retardation_times(double h) {
   constexpr int unit_loads = 64;
   retardation_times_known_ = true;
   std::vector<BlockMatrix> stiffness(forces_.size(), a_);
@@ -65,6 +58,13 @@ void DeformableBody::weigh_retardation_times(double h) {
   for (int i = 0; i < nodes(); ++i)
     if (const double mean = time[std::size_t(group[std::size_t(i)])]; mean >= 0)
       retardation_time_[std::size_t(i)] = mean;
+  // Models keep what they found in their last linearisation, such as rotations. They are left as in later runs, where
+  // a step linearises them once.
+  for (ForceModel* f : forces_) {
+    f->reset();
+    f->linearise(q_.data(), scratch.data(), nullptr, h, Tangent::system);
+  }
+  for (ForceModel* f : damped_) f->linearise_damping(q_.data(), v_.data(), scratch.data(), nullptr, h);
 }
 
 double DeformableBody::retardation_time(const MaterialPoint& p) const {

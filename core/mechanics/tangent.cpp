@@ -80,6 +80,10 @@ void DeformableBody::factorise(double h) {
     const auto begin = std::chrono::steady_clock::now();
     const bool good = solver_->begin_motion(&a_, load_, guess_);
     factor_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    if (good && !retardation_times_known_) {  // once
+      find_retardation_times(h);
+      solver_->begin_motion(nullptr, load_, guess_);
+    }
     if (good || attempt == 12) break;
     ++indefinite_;
     if (with_load) filling_gradient->add_gradient(a_, 1);

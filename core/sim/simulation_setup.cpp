@@ -78,8 +78,6 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
   context_.h = scene_->time_step();
   context_.gravity = scene_->gravity();
   context_.events = &sink_;
-  if (diagnostics.ok())
-    for (DeformableBody* b : scene_->all<DeformableBody>()) b->find_retardation_times(context_);
   if (diagnostics.ok() && settle_time_ > 0) settle(diagnostics);
   if (diagnostics.ok()) publish();
 }
