@@ -8,10 +8,11 @@
 namespace insula::gateway {
 
 /// All of them, as they are for a new case:
-/// {threshold: null | number, label: null | number, seed: null | [3], around_mm: null | number,
-///  paint: [{erase, radius_mm, points: [[3]]}], unit, mirror, any_size, cuts: [[6]], neck: null | {plane: [6]} |
-///  {points: [6]}, inlet: null | [3], rebuild_mm: null | number, keep_mm, vertices, spin_deg: null | number, rehearse,
-///  plays, site, difficulty}
+/// - of a scan: threshold: null | number, label: null | number, seed: null | [3], around_mm: null | number,
+///   paint: [{erase, radius_mm, points: [[3]]}].
+/// - of the surface: unit, mirror, any_size, cuts: [[6]], rebuild_mm: null | number.
+/// - of the vessel: neck: null | {plane: [6]} | {points: [6]}, inlet: null | [3], keep_mm, vertices.
+/// - of the case: spin_deg: null | number, rehearse, plays, site, difficulty.
 nlohmann::json first_choices();
 
 /// Choices with some of them changed. Throws InputError, which says for the author what is wrong.
