@@ -225,6 +225,7 @@ class BipolarForceps final : public Instrument {
   }
   void cool() {
     tissue_.reset();
+    heated_at_.setZero();
     current_ = stuck_ = false;
     held_.clear();
   }
