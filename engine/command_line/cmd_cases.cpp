@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/base/input_error.h"
+#include "core/base/removed_at_end.h"
 #include "core/sim/simulation.h"
 #include "engine/command_line/cases.h"
 #include "engine/live/project_folder.h"
@@ -37,22 +38,6 @@ void check_scenes(const CommandContext& context, const std::vector<fs::path>& sc
   }
 }
 
-/// A file that goes at the end.
-class Passing {
- public:
-  explicit Passing(fs::path path = {}) : path_(std::move(path)) {}
-  ~Passing() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove(path_, ignored);
-  }
-  Passing(const Passing&) = delete;
-  Passing& operator=(const Passing&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 /// What is to be added, as an archive: the given one, or one of the given folder, which goes at the end.
 class Packed {
  public:
@@ -73,7 +58,7 @@ class Packed {
  private:
   fs::path archive_;
   std::string name_;
-  Passing made_;
+  RemovedAtEnd made_;
 };
 
 /// A case of the same name, out of the way. It comes back if there is none of its name at the end.
@@ -164,7 +149,7 @@ int cmd_cases_copy(const CommandContext& context, const CasesOptions& o) {
     const fs::path to = fs::absolute(o.to).lexically_normal(), beside = to.parent_path();
     const std::string name = to.filename().string();
     fs::create_directories(beside);
-    const Passing archive(beside / ("." + name + ".zip"));
+    const RemovedAtEnd archive(beside / ("." + name + ".zip"));
     if (fs::is_directory(o.file)) {
       ListedCase built = built_case(o.file);
       built.name = name;

@@ -9,6 +9,7 @@
 #include <ostream>
 
 #include "core/base/input_error.h"
+#include "core/base/removed_at_end.h"
 #include "core/bus/bus.h"
 #include "core/bus/lcm_bus.h"
 #include "core/scene/loader.h"
@@ -91,23 +92,10 @@ class BusCheck {
 
 /// Folder in which the engine writes the viewer's files. A killed engine leaves its files there, and they are removed
 /// with the session.
-class BundleFolder {
- public:
-  BundleFolder() {
-    std::string name = (runtime_folder() / "insula-XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~BundleFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  BundleFolder(const BundleFolder&) = delete;
-  BundleFolder& operator=(const BundleFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
+RemovedAtEnd bundle_folder() {
+  std::string name = (runtime_folder() / "insula-XXXXXX").string();
+  return RemovedAtEnd(mkdtemp(name.data()) != nullptr ? fs::path(name) : fs::path());
+}
 
 std::vector<std::string> on_standby(std::vector<std::string> engine) {
   engine.emplace_back("--standby");
@@ -172,7 +160,7 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
     }
   signal(SIGPIPE, SIG_IGN);
   const Supervisor::Print print = [&out = context.out](std::string_view line) { out << line << std::endl; };
-  const BundleFolder bundles;
+  const RemovedAtEnd bundles = bundle_folder();
   const ChildSpec engine = engine_child(options, program, bundles.path());
   SceneReload reload(options.scene, options.plugin_paths, on_standby(engine.command),
                      bundles.path().empty() ? fs::path() : bundles.path() / "notice.txt", print);

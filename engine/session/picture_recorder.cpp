@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/base/input_error.h"
+#include "core/base/removed_at_end.h"
 #include "core/bus/codec.h"
 #include "engine/live/bundle.h"
 #include "engine/live/frame.h"
@@ -32,23 +33,14 @@ mcap::Buffer compressed(const fs::path& file) {
   return out;
 }
 
-/// Removes the folder at the end.
-struct Removed {
-  fs::path folder;
-  ~Removed() {
-    std::error_code ignored;
-    fs::remove_all(folder, ignored);
-  }
-};
-
 }  // namespace
 
 void put_bundle(McapWriter& file, const Simulation& simulation) {
   std::string name = (fs::temp_directory_path() / "insula_bundle_XXXXXX").string();
   if (!::mkdtemp(name.data())) throw InputError(name + ": no folder can be made there");
-  const Removed folder{name};
-  write_bundle(simulation, folder.folder, 0);
-  for (const auto& entry : fs::directory_iterator(folder.folder))
+  const RemovedAtEnd folder(name);
+  write_bundle(simulation, folder.path(), 0);
+  for (const auto& entry : fs::directory_iterator(folder.path()))
     file.attach(session::bundle_prefix + entry.path().filename().string() + ".zst", "application/zstd", 0,
                 compressed(entry.path()));
 }

@@ -11,6 +11,7 @@
 #include "core/sim/simulation.h"
 #include "core/testing/example.h"
 #include "core/testing/held.h"
+#include "core/testing/held_tool.h"
 #include "plugins/bipolar_forceps/heated_tissue.h"
 #include "plugins/bridging_veins/bridging_veins.h"
 
@@ -102,12 +103,7 @@ struct Veins {
   }
   void hold(const Vec3& tip, bool button, int steps = 1) {
     for (int i = 0; i < steps; ++i) {
-      HandState hand;
-      hand.present = true;
-      hand.device = forceps->home_pose();
-      hand.device.p = tip;
-      hand.button1 = button;
-      s->set_hand(1, hand);
+      s->set_hand(1, test::held_at(*forceps, tip, button));
       s->step();
       for (const Event& e : s->events()) {
         closed += e.kind == "coagulated" && e.id == "bipolar" && e.text == "veins" && e.hand == 1;

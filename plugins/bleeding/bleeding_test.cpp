@@ -6,6 +6,7 @@
 
 #include "core/sim/report.h"
 #include "core/testing/held.h"
+#include "core/testing/held_tool.h"
 #include "plugins/pressure/shell_for_test.h"
 #include "tests/figures/figure.h"
 
@@ -56,12 +57,7 @@ struct Field : test::TestScene {
   }
   void move(const Vec3& tip, bool button, int n = 1) const {
     for (int i = 0; i < n; ++i) {
-      HandState hand;
-      hand.present = true;
-      hand.device = tool->home_pose();
-      hand.device.p = tip;
-      hand.button1 = button;
-      s->set_hand(0, hand);
+      s->set_hand(0, test::held_at(*tool, tip, button));
       s->step();
     }
   }

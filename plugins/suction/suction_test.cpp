@@ -6,6 +6,7 @@
 
 #include "core/testing/block_mesh.h"
 #include "core/testing/example.h"
+#include "core/testing/held_tool.h"
 #include "tests/figures/figure.h"
 
 namespace insula {
@@ -32,12 +33,7 @@ struct SuctionBed {
     if (s) tube = s->scene().find_as<Instrument>("tube");
   }
   void hold(const Vec3& at, bool button) {
-    HandState hand;
-    hand.present = true;
-    hand.device = tube->home_pose();
-    hand.device.p = at;
-    hand.button1 = button;
-    s->set_hand(0, hand);
+    s->set_hand(0, test::held_at(*tube, at, button));
     s->step();
   }
   /// Forces along the tube and across it, N; false when nothing is held.

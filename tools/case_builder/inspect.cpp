@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/case_builder/inspect.h"
 
-#include <fstream>
-
 #include "core/base/input_error.h"
 #include "core/model/geometry/box_tree.h"
 #include "tools/case_builder/intake.h"
@@ -29,12 +27,6 @@ Json size_of(const TriMesh& m) {
   return to_json(box.sizes());
 }
 
-void write_bytes(const fs::path& file, const std::string& bytes) {
-  std::ofstream out(file, std::ios::binary);
-  if (!out.write(bytes.data(), std::streamsize(bytes.size())).flush())
-    throw InputError(file.string() + ": cannot be written: is the disk full?");
-}
-
 /// What there is to choose from, before the vessel is known.
 void run_scan_look(const fs::path& input, const fs::path& folder, std::FILE* out, Progress& progress) {
   progress.stage("scan", 3);
@@ -49,7 +41,7 @@ void run_scan_look(const fs::path& input, const fs::path& folder, std::FILE* out
   } else {
     fs::create_directories(folder);
     write_nameless(folder / "scan.mha", volume);
-    write_bytes(folder / "scan.raw", look.block);
+    write_text(folder / "scan.raw", look.block);
     write_json(folder / "scan.json", look.facts);
   }
   progress.finish();

@@ -35,31 +35,22 @@ fs::path new_folder(const fs::path& near) {
 
 }  // namespace
 
-UnpackedSeries::UnpackedSeries(const fs::path& archive) {
+RemovedAtEnd unpacked_series(const fs::path& archive) {
   const ZipReader zip(archive, "zip of a DICOM series", most_files + 1);
-  folder_ = new_folder(archive.has_parent_path() ? archive.parent_path() : fs::path("."));
-  try {
-    std::uint64_t bytes = 0;
-    int images = 0;
-    for (std::uint64_t i = 0; i < zip.count(); ++i) {
-      if (zip.name(i).ends_with('/')) continue;
-      const std::string image = zip.read(i, most_image_bytes);
-      if ((bytes += image.size()) > most_bytes) zip.refuse(fmt::format("holds more than {} bytes", most_bytes));
-      if (!is_image(image)) continue;
-      std::ofstream out(folder_ / fmt::format("image_{:04}.dcm", ++images), std::ios::binary);
-      if (!out.write(image.data(), std::streamsize(image.size())).flush())
-        throw InputError(folder_.string() + ": cannot be written: is the disk full?");
-    }
-    if (images == 0) zip.refuse("holds no DICOM images");
-  } catch (...) {
-    fs::remove_all(folder_);
-    throw;
+  RemovedAtEnd folder(new_folder(archive.has_parent_path() ? archive.parent_path() : fs::path(".")));
+  std::uint64_t bytes = 0;
+  int images = 0;
+  for (std::uint64_t i = 0; i < zip.count(); ++i) {
+    if (zip.name(i).ends_with('/')) continue;
+    const std::string image = zip.read(i, most_image_bytes);
+    if ((bytes += image.size()) > most_bytes) zip.refuse(fmt::format("holds more than {} bytes", most_bytes));
+    if (!is_image(image)) continue;
+    std::ofstream out(folder.path() / fmt::format("image_{:04}.dcm", ++images), std::ios::binary);
+    if (!out.write(image.data(), std::streamsize(image.size())).flush())
+      throw InputError(folder.path().string() + ": cannot be written: is the disk full?");
   }
-}
-
-UnpackedSeries::~UnpackedSeries() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
+  if (images == 0) zip.refuse("holds no DICOM images");
+  return folder;
 }
 
 }  // namespace insula::case_builder

@@ -16,14 +16,14 @@ namespace {
 
 #ifdef INSULA_WITH_ITK
 mesh_tool::NiftiVolume read_archive(const fs::path& input) {
-  const UnpackedSeries series(input);
+  const RemovedAtEnd series = unpacked_series(input);
   try {
-    return read_volume(series.folder());
+    return read_volume(series.path());
   } catch (const InputError& e) {
     // The author knows no such folder.
     std::string said = e.what();
-    for (std::size_t at; (at = said.find(series.folder().string())) != std::string::npos;)
-      said.replace(at, series.folder().string().size(), input.string());
+    for (std::size_t at; (at = said.find(series.path().string())) != std::string::npos;)
+      said.replace(at, series.path().string().size(), input.string());
     throw InputError(said);
   }
 }

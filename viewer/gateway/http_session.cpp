@@ -24,8 +24,8 @@ constexpr auto upload_timeout = std::chrono::minutes(5);
 constexpr std::uint32_t header_limit = 16 * 1024;
 /// A part that takes longer to read would delay pictures. A page asks again for the rest.
 constexpr std::uint64_t most_part_bytes = 4 << 20;
-/// Reports and pictures of a case come from its author's file: nothing in them may run or load.
 constexpr std::size_t most_audited = 1000;  // of a request, bytes: texts of scenes are long
+/// Reports and pictures of a case come from its author's file: nothing in them may run or load.
 constexpr const char* file_policy = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:";
 constexpr std::string_view not_built =
     "<!doctype html><meta charset=utf-8><title>Insula</title><p>The viewer's page is not built. "
@@ -83,7 +83,7 @@ void HttpSession::read_upload(const Request& head) {
     return send_error(head, http::status::forbidden, "only for pages on this machine and instructors");
   if (parser_->content_length().value_or(0) > most_scan_bytes)
     return send_error(head, http::status::payload_too_large, too_large_scan);
-  incoming_ = std::make_unique<IncomingFile>(site_.studio.incoming());
+  incoming_ = std::make_unique<RemovedAtEnd>(site_.studio.incoming());
   upload_.emplace(std::move(*parser_));
   upload_->body_limit(most_scan_bytes);
   beast::error_code error;

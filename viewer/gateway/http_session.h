@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "viewer/gateway/incoming_file.h"
+#include "core/base/removed_at_end.h"
 #include "viewer/gateway/page_stream.h"
 #include "viewer/gateway/site.h"
 
@@ -68,7 +68,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   beast::flat_buffer in_;
   std::optional<http::request_parser<http::string_body>> parser_;
   std::optional<http::request_parser<http::file_body>> upload_;
-  std::unique_ptr<IncomingFile> incoming_;
+  std::unique_ptr<RemovedAtEnd> incoming_;  ///< the upload, until its project has it
 };
 
 }  // namespace insula::gateway

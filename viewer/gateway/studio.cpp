@@ -19,6 +19,7 @@ using Kind = StudioJob::Kind;
 constexpr auto inspect_limit = std::chrono::minutes(5);
 constexpr auto build_limit = std::chrono::hours(2);
 constexpr const char* found_in = "inspect";
+constexpr const char* at_work = "the case is at work; wait, or cancel it";
 constexpr const char* damaged = "the project's description is damaged";
 
 std::string state_of(const StudioProject& p, const char* what) {
@@ -178,7 +179,7 @@ ApiAnswer Studio::play(StudioProject& p, const std::string& exercise) {
   const fs::path folder = case_folder(p);
   const std::vector<std::string> all = folder.empty() ? std::vector<std::string>() : exercises_in(folder);
   if (std::find(all.begin(), all.end(), exercise) == all.end()) return refusal(404, "there is no such exercise");
-  if (jobs_.count(p.name)) return refusal(409, "the case is at work; wait, or cancel it");
+  if (jobs_.count(p.name)) return refusal(409, at_work);
   add_error_.erase(p.name);
   wanted_exercise_[p.name] = exercise;
   const std::vector<std::string> command{(places_.programs / "insula").string(),
@@ -221,7 +222,7 @@ void Studio::ended(const std::string& name, const StudioJob& job) {
   if (job.succeeded() && job.kind() == Kind::build)
     p->work["built"] = {{"folder", work["folder"]}, {"choices", work["choices"]}};
   work["state"] = error || !job.succeeded() ? (job.cancelled() ? "cancelled" : "failed") : "done";
-  work["error"] = error ? "the project cannot be written: is the disk full?" : job.error();
+  work["error"] = error ? project_not_written : job.error();
   projects_.write(*p);
 }
 
@@ -252,8 +253,7 @@ ApiAnswer Studio::change(StudioProject& p, std::string_view path, const Json& bo
   if (path == "undo" && next.at > 0) --next.at;
   if (path == "redo" && next.at + 1 < next.history.size()) ++next.at;
   const bool anew = reading(next) != reading(p);
-  if (anew && jobs_.count(p.name) && !job(p.name, Kind::inspect))
-    return refusal(409, "the case is at work; wait, or cancel it");
+  if (anew && jobs_.count(p.name) && !job(p.name, Kind::inspect)) return refusal(409, at_work);
   if (anew) inspect(next);
   else projects_.write(next);
   return shown(next);
@@ -263,7 +263,7 @@ ApiAnswer Studio::act(std::string_view path, StudioProject& p, const Json& body)
   if (path == "choose" || path == "undo" || path == "redo") return change(p, path, body);
   if (path == "build") return build(p);
   if (path == "again") {
-    if (jobs_.count(p.name)) return refusal(409, "the case is at work; wait, or cancel it");
+    if (jobs_.count(p.name)) return refusal(409, at_work);
     inspect(p);
     return shown(p);
   }
@@ -277,7 +277,7 @@ ApiAnswer Studio::act(std::string_view path, StudioProject& p, const Json& body)
     return shown(p);
   }
   if (path == "remove") {
-    if (jobs_.count(p.name)) return refusal(409, "the case is at work; wait, or cancel it");
+    if (jobs_.count(p.name)) return refusal(409, at_work);
     projects_.remove(p.name);
     return {200, "{}\n"};
   }

@@ -7,8 +7,8 @@
 #include <optional>
 #include <thread>
 
+#include "core/base/removed_at_end.h"
 #include "core/testing/temp_folder.h"
-#include "viewer/gateway/incoming_file.h"
 #include "viewer/gateway/studio.h"
 
 namespace insula::gateway {
@@ -55,7 +55,7 @@ class StudioTest : public ::testing::Test {
   ApiAnswer sent(const std::string& file, const std::string& bytes) {
     const fs::path content = studio_->incoming();
     std::ofstream(content, std::ios::binary) << bytes;
-    const IncomingFile goes(content);
+    const RemovedAtEnd goes(content);
     return studio_->upload("file=" + file, content);
   }
   json upload(const std::string& file = "vessel.off", const std::string& bytes = off_file) {

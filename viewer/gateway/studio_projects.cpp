@@ -64,7 +64,7 @@ void StudioProjects::write(const StudioProject& p) const {
                   {"history", p.history}, {"at", p.at},
                   {"work", p.work}};
   if (!replace_file(folder(p.name) / description, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"))
-    throw InputError("the project cannot be written: is the disk full?");
+    throw InputError(project_not_written);
 }
 
 StudioProject StudioProjects::create(const std::string& file, const std::string& input, const fs::path& content) const {

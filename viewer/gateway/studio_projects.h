@@ -23,6 +23,8 @@ struct StudioProject {
   const nlohmann::json& choices() const { return history[at]; }
 };
 
+inline constexpr const char* project_not_written = "the project cannot be written: is the disk full?";
+
 class StudioProjects {
  public:
   explicit StudioProjects(std::filesystem::path root) : root_(std::move(root)) {}

@@ -45,8 +45,7 @@ bool has_level(const StudioProject& p) {
 std::vector<std::string> with_strokes(std::vector<std::string> words, const StudioProject& p, const fs::path& folder) {
   const Json& strokes = p.choices()["paint"];
   if (strokes.empty()) return words;
-  if (!replace_file(folder / paint_file, strokes.dump() + "\n"))
-    throw InputError("the project cannot be written: is the disk full?");
+  if (!replace_file(folder / paint_file, strokes.dump() + "\n")) throw InputError(project_not_written);
   std::replace(words.begin(), words.end(), std::string(paint_file), (folder / paint_file).string());
   return words;
 }
@@ -80,7 +79,7 @@ void Studio::scan_ended(StudioProject& p, const StudioJob& job) {
   p.work["scan"] = {{"state", done              ? "done"
                               : job.cancelled() ? "cancelled"
                                                 : "failed"},
-                    {"error", error ? "the project cannot be written: is the disk full?" : job.error()}};
+                    {"error", error ? project_not_written : job.error()}};
   if (!done) fs::remove_all(folder / "scan.part", ignored);
   if (done) p.work["inspect"] = {{"state", "waiting"}, {"error", ""}, {"number", 0}};
   projects_.write(p);

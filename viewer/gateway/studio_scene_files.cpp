@@ -19,6 +19,7 @@ constexpr const char* copy_manifest = "insula_case.json";
 constexpr const char* kept_folder = ".kept";
 constexpr const char* draft_file = "draft.xml";
 constexpr std::size_t most_versions = 100;
+constexpr const char* not_written = "the scene cannot be written: is the disk full?";
 
 /// The numbers of the versions in a folder, the newest first.
 std::vector<int> version_numbers(const fs::path& folder) {
@@ -52,7 +53,7 @@ nlohmann::json versions_json(const fs::path& folder) {
 void keep_version(const fs::path& folder, const std::string& text) {
   const std::vector<int> numbers = version_numbers(folder);
   if (!replace_file(version_file(folder, numbers.empty() ? 1 : numbers.front() + 1), text))
-    throw InputError("the scene cannot be written: is the disk full?");
+    throw InputError(not_written);
   std::error_code ignored;
   for (std::size_t k = most_versions - 1; k < numbers.size(); ++k)
     fs::remove(version_file(folder, numbers[k]), ignored);
@@ -145,7 +146,7 @@ bool StudioSceneFiles::write(const std::string& name, const std::string& file, c
   fs::create_directories(versions, ignored);
   if (const std::string before = read_file_bytes(path); before != text) {
     keep_version(versions, before);
-    if (!replace_file(path, text)) throw InputError("the scene cannot be written: is the disk full?");
+    if (!replace_file(path, text)) throw InputError(not_written);
   }
   fs::remove(versions / draft_file, ignored);
   return true;

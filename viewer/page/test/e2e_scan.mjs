@@ -10,26 +10,14 @@ import { axeFinds } from './axe.mjs';
 import { check, launch, patience } from './browser.mjs';
 import { ownBus, Programs } from './programs.mjs';
 import { forkScan } from './scan_bytes.mjs';
+import { dropped, shots } from './studio_page.mjs';
 
 const programs = new Programs();
 const data = mkdtempSync(join(tmpdir(), 'insula_scan_'));
 const bus = ownBus();
 const person = 'Doe^Jane';
 
-async function shot(page, name) {
-  if (!process.env.INSULA_SHOTS) return;
-  await page.screenshot({ path: join(process.env.INSULA_SHOTS, `scan_${name}.png`), fullPage: true });
-}
-
-const dropped = (page, name, bytes) =>
-  page.evaluate(
-    ({ file, base64 }) => {
-      const transfer = new DataTransfer();
-      transfer.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], file));
-      document.querySelector('.drop').dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
-    },
-    { file: name, base64: bytes.toString('base64') },
-  );
+const shot = shots('scan');
 
 /** Once the vessel of the present choices is found: its kept and other nodes, and its triangles. */
 async function found(page) {

@@ -9,6 +9,7 @@ import { join } from 'node:path';
 import { axeFinds } from './axe.mjs';
 import { check, launch, patience, waitFor } from './browser.mjs';
 import { ownBus, Programs, root } from './programs.mjs';
+import { shots } from './studio_page.mjs';
 
 const programs = new Programs();
 const data = mkdtempSync(join(tmpdir(), 'insula_scenes_'));
@@ -16,10 +17,7 @@ const shipped = join(root, 'scenes/training/1_sylvian_fissure.xml');
 const original = readFileSync(shipped, 'utf8');
 const copy = join(data, 'scenes/1_sylvian_fissure/scenes/training/1_sylvian_fissure.xml');
 
-async function shot(page, name) {
-  if (!process.env.INSULA_SHOTS) return;
-  await page.screenshot({ path: join(process.env.INSULA_SHOTS, `scene_${name}.png`), timeout: patience.timeout });
-}
+const shot = shots('scene', { timeout: patience.timeout });
 
 const onDisk = (file) => readFileSync(file, 'utf8');
 const item = (page, name, of) => page.getByRole('treeitem').filter({ hasText: `${name}${of}` });

@@ -10,26 +10,14 @@ import { axeFinds } from './axe.mjs';
 import { check, launch, patience, waitFor } from './browser.mjs';
 import { ownBus, Programs, root } from './programs.mjs';
 import { childrenOf, gatewayBelow } from './studio_processes.mjs';
+import { dropped, shots } from './studio_page.mjs';
 
 const programs = new Programs();
 const data = mkdtempSync(join(tmpdir(), 'insula_studio_'));
 const surface = readFileSync(join(root, 'meshes/arteries/narrow_neck/wall.ply'));
 const bus = ownBus();
 
-async function shot(page, name) {
-  if (!process.env.INSULA_SHOTS) return;
-  await page.screenshot({ path: join(process.env.INSULA_SHOTS, `studio_${name}.png`), fullPage: true });
-}
-
-const dropped = (page, name, bytes) =>
-  page.evaluate(
-    ({ file, base64 }) => {
-      const transfer = new DataTransfer();
-      transfer.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], file));
-      document.querySelector('.drop').dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true }));
-    },
-    { file: name, base64: bytes.toString('base64') },
-  );
+const shot = shots('studio');
 
 const project = (page, name) => page.evaluate(async (n) => (await fetch(`api/studio/project?name=${n}`)).json(), name);
 
