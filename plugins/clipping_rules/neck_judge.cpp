@@ -21,6 +21,7 @@ bool NeckJudge::attach(const ShellBody& vessel) {
   for (int i : rim_) rim_height_ += all[std::size_t(i)].height / double(rim_.size());
   held_.assign(all.size(), 0);
   height_.assign(all.size(), 0);
+  cut_.assign(remnant_.edges().size(), 0);
   return !rim_.empty();
 }
 
@@ -53,6 +54,15 @@ bool NeckJudge::between(const ClipState& c, const Vec3& point) const {
   return std::abs(across) <= half_slit && (offset - across * c.normal).norm() <= 0.5 * c.blade_width;
 }
 
+bool NeckJudge::passes_between(const ClipState& c, const Vec3& from, const Vec3& to) const {
+  const double length = (to - from).norm();
+  if (length <= c.blade_width) return false;  // one of its ends would be between them
+  const int parts = int(std::ceil(2 * length / c.blade_width));
+  for (int k = 1; k < parts; ++k)
+    if (between(c, from + double(k) / parts * (to - from))) return true;
+  return false;
+}
+
 Vec3 NeckJudge::neck() const {
   Vec3 centre = Vec3::Zero();
   for (int i : rim_)
@@ -65,7 +75,9 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
   const auto& all = remnant_.vertices();
   const auto at = [&](int i) -> Vec3 { return vessel_->q().segment<3>(3 * all[std::size_t(i)].node); };
   const Vec3 centre = neck();
+  const std::vector<SacRemnant::Edge>& edges = remnant_.edges();
   std::fill(held_.begin(), held_.end(), char(0));
+  std::fill(cut_.begin(), cut_.end(), char(0));
   double past = -1e9;
   out.gap = 1e9;
   for (const ClipState& c : clips) {
@@ -77,6 +89,8 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
     for (int i : rim_) far = std::max(far, along.dot(at(i)));
     past = std::max(past, along.dot(c.blade_tip) - far);
     for (std::size_t i = 0; i < all.size(); ++i) held_[i] = held_[i] || between(c, at(int(i)));
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      cut_[e] = cut_[e] || passes_between(c, at(edges[e][0]), at(edges[e][1]));
   }
   if (out.clips == 0) {
     out.gap = 0;
@@ -85,7 +99,7 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
   out.tip_past_neck = past;
   const Vec3& up = vessel_->model().neck_normal;
   for (std::size_t i = 0; i < all.size(); ++i) height_[i] = (at(int(i)) - centre).dot(up) + rim_height_;
-  const SacRemnant::Open open = remnant_.measure(held_, height_, margin);
+  const SacRemnant::Open open = remnant_.measure(held_, cut_, height_, margin);
   out.neck_open = open.neck;
   out.sac_open = sealed ? open.sac : 1;
   out.grade = sealed ? grade(open) : 5;

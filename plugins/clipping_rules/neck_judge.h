@@ -3,7 +3,8 @@
 //
 // Sindou, Acevedo, Turjman 1998 grade the remnant: I less than half of the neck, II more than half of the neck, III a
 // lobe of the sac, IV less than three quarters of the sac, V more. Here 0 means that there is no remnant.
-// - A vertex of the wall is held when it lies between the blades of a closed clip.
+// - A vertex of the wall is held when it lies between the blades of a closed clip. An edge longer than a blade is wide
+//   may pass between them while its ends do not.
 // - sac_remnant.h says what blood still reaches. The share of the neck counts what rises above `margin`.
 // - lobe: blood reaches most of the bleb, but not most of the sac.
 #pragma once
@@ -41,12 +42,13 @@ class NeckJudge {
  private:
   bool on_neck(const ClipState& clip, const Vec3& neck) const;
   bool between(const ClipState& clip, const Vec3& point) const;
+  bool passes_between(const ClipState& clip, const Vec3& from, const Vec3& to) const;
   static int grade(const SacRemnant::Open& open);
   const ShellBody* vessel_ = nullptr;
   SacRemnant remnant_;
   std::vector<int> rim_;   ///< indices of the remnant's vertices at the neck's plane
   double rim_height_ = 0;  ///< of the rim's middle above the neck's plane at rest, m
-  mutable std::vector<char> held_;
+  mutable std::vector<char> held_, cut_;
   mutable std::vector<double> height_;
 };
 

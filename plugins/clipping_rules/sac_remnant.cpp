@@ -37,29 +37,28 @@ bool SacRemnant::attach(const WallModel& wall) {
 }
 
 void SacRemnant::join(const WallModel& wall, std::span<const int> own) {
-  std::vector<std::array<int, 2>> edges;
+  edges_.clear();
   for (const auto& t : wall.wall.triangles)
     for (int k = 0; k < 3; ++k) {
       const int a = own[std::size_t(t[std::size_t(k)])], b = own[std::size_t(t[std::size_t((k + 1) % 3)])];
       if (a >= 0 && b < 0) vertices_[std::size_t(a)].border = true;
       if (b >= 0 && a < 0) vertices_[std::size_t(b)].border = true;
-      if (a < 0 || b < 0) continue;
-      edges.push_back({a, b});
-      edges.push_back({b, a});
+      if (a >= 0 && b >= 0) edges_.push_back({std::min(a, b), std::max(a, b)});
     }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::sort(edges_.begin(), edges_.end());
+  edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
   first_.assign(vertices_.size() + 1, 0);
-  neighbour_.clear();
-  for (const auto& e : edges) {
-    ++first_[std::size_t(e[0]) + 1];
-    neighbour_.push_back(e[1]);
-  }
+  for (const Edge& e : edges_)
+    for (const int v : e) ++first_[std::size_t(v) + 1];
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+  edge_of_.assign(2 * edges_.size(), 0);
+  std::vector<int> next = first_;
+  for (std::size_t e = 0; e < edges_.size(); ++e)
+    for (const int v : edges_[e]) edge_of_[std::size_t(next[std::size_t(v)]++)] = int(e);
 }
 
-SacRemnant::Open SacRemnant::measure(std::span<const char> held, std::span<const double> height,
-                                     double tolerance) const {
+SacRemnant::Open SacRemnant::measure(std::span<const char> held, std::span<const char> cut,
+                                     std::span<const double> height, double tolerance) const {
   std::fill(reached_.begin(), reached_.end(), char(0));
   std::size_t count = 0;
   for (std::size_t i = 0; i < vertices_.size(); ++i)
@@ -70,8 +69,9 @@ SacRemnant::Open SacRemnant::measure(std::span<const char> held, std::span<const
   for (std::size_t next = 0; next < count; ++next) {
     const auto i = std::size_t(front_[next]);
     for (int k = first_[i]; k < first_[i + 1]; ++k) {
-      const int j = neighbour_[std::size_t(k)];
-      if (reached_[std::size_t(j)] || held[std::size_t(j)]) continue;
+      const auto e = std::size_t(edge_of_[std::size_t(k)]);
+      const int j = edges_[e][0] == int(i) ? edges_[e][1] : edges_[e][0];
+      if (cut[e] || reached_[std::size_t(j)] || held[std::size_t(j)]) continue;
       reached_[std::size_t(j)] = 1;
       front_[count++] = j;
     }

@@ -5,6 +5,7 @@
 // the wall's edges joins to those vessels without passing between the blades. So a blade that is too short leaves the
 // whole dome open, a blade that lies obliquely leaves a wedge, and a blade that lies too high leaves a rim.
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
@@ -36,15 +37,20 @@ class SacRemnant {
   /// False if the wall has no neck or no region "sac". Allocates all that measure() needs.
   bool attach(const WallModel& wall);
   const std::vector<Vertex>& vertices() const { return vertices_; }
-  /// `held[i]`: vertices()[i] lies between closed blades. `height[i]`: where it is now above the neck's plane, m.
-  /// `tolerance`: height of a remnant that does not count, m. Allocates nothing.
-  Open measure(std::span<const char> held, std::span<const double> height, double tolerance) const;
+  /// Two neighbouring vertices, as indices among vertices(), the smaller first.
+  using Edge = std::array<int, 2>;
+  const std::vector<Edge>& edges() const { return edges_; }
+  /// `held[i]`: vertices()[i] lies between closed blades. `cut[e]`: edges()[e] passes between them, though its ends do
+  /// not. `height[i]`: where a vertex is now above the neck's plane, m. `tolerance`: height of a remnant that does not
+  /// count, m. Allocates nothing.
+  Open measure(std::span<const char> held, std::span<const char> cut, std::span<const double> height,
+               double tolerance) const;
 
  private:
   void join(const WallModel& wall, std::span<const int> own);  ///< own[node]: index among vertices(), or -1
   std::vector<Vertex> vertices_;
-  std::vector<int> first_,
-      neighbour_;  ///< neighbours of vertex i: neighbour_[first_[i]] to neighbour_[first_[i + 1] - 1]
+  std::vector<Edge> edges_;
+  std::vector<int> first_, edge_of_;  ///< edges of vertex i: edge_of_[first_[i]] to edge_of_[first_[i + 1] - 1]
   mutable std::vector<char> reached_;
   mutable std::vector<int> front_;
 };

@@ -16,8 +16,10 @@ namespace insula::case_builder {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double past = 1.5;       // mm that the tips go beyond the flattened neck
-constexpr double off_floor = 0.4;  // mm that they keep from the floor, half their own width included
+constexpr double half_blade = 0.7;  // mm: of a blade's width, with what lies between two vertices of the wall
+constexpr double yields = 1;        // mm by which the sac lets itself be pressed in by an open blade
+constexpr double past = 1.5;        // mm that the tips go beyond the flattened neck
+constexpr double off_floor = 0.4;   // mm that they keep from the floor, half their own width included
 
 Vec3 across(const Vec3& a, const Vec3& n) { return (a - a.dot(n) * n).normalized(); }
 
@@ -58,7 +60,8 @@ std::vector<ClipShape> read_clips(const fs::path& project) {
                 1000 * c.gap(tool.opening_max),
                 0.5 * (from + to),
                 (to - from).normalized(),
-                1000 * c.grip.p};
+                1000 * c.grip.p,
+                std::sin(tool.opening_max)};
     out.push_back(s);
   }
   if (out.empty()) throw InputError("meshes/clips holds no clip");
@@ -97,8 +100,77 @@ void ClipPlan::lay(const artery::Neck& neck, const BladePlacement& where) {
   pose = applier_pose(clip, neck.centre + at.lift * neck.normal - at.slide * outward, -outward, closing);
 }
 
+bool ClipPlan::meets_dome() const { return dome_outside > yields; }
 bool ClipPlan::too_short() const { return clip.blade < needed - past; }
 bool ClipPlan::kept_back() const { return drawn_back > past; }
+
+namespace {
+
+/// Points of the vessel in a clip's own frame where an applier holds the clip.
+class ClipView {
+ public:
+  ClipView(const ClipShape& clip, const ApplierPose& pose)
+      : clip_(clip),
+        pose_(pose),
+        y_(pose.shaft.cross(pose.flat)),
+        root_(clip.middle - 0.5 * clip.blade * clip.inward) {}
+  Vec3 local(const Vec3& p) const {
+    const Vec3 d = p - pose_.tip;
+    return clip_.grip + Vec3(d.dot(pose_.flat), d.dot(y_), d.dot(pose_.shaft));
+  }
+  /// Calls with points of the clamping line from `behind` mm behind the root to the tip.
+  template <class Call>
+  void along_blade(double behind, const Call& call) const {
+    for (double along = -behind; along <= clip_.blade; along += 0.25) call(Vec3(root_ + along * clip_.inward));
+  }
+
+ private:
+  const ClipShape& clip_;
+  const ApplierPose& pose_;
+  Vec3 y_, root_;
+};
+
+}  // namespace
+
+double outside_of_blades(const artery::Vessel& v, const ClipShape& clip, const ApplierPose& pose) {
+  const ClipView view(clip, pose);
+  double outside = 0;
+  for (std::size_t i = 0; i < v.wall.mesh.vertices.size(); ++i) {
+    const std::string& region = v.regions[std::size_t(v.region[i])];
+    if (region != "sac" && region != "bleb") continue;
+    const Vec3 p = view.local(v.wall.mesh.vertices[i]);
+    double narrowest = 1e300;  // of all points of the blade that come by there
+    view.along_blade(0, [&](const Vec3& b) {
+      if (std::abs(b.y() - p.y()) < half_blade && b.z() <= p.z() + half_blade)
+        narrowest = std::min(narrowest, clip.half_open(b.z()));
+    });
+    if (narrowest < 1e300) outside = std::max(outside, std::abs(p.x()) - narrowest);
+  }
+  return outside;
+}
+
+double branch_between_blades(const artery::Vessel& v, const ClipShape& clip, const ApplierPose& pose) {
+  constexpr double behind_root = 3;  // mm: the jaws come together there too
+  const ClipView view(clip, pose);
+  double caught = 0;
+  for (const artery::NamedCurve& c : v.centrelines) {
+    if (c.name == "sac") continue;
+    for (std::size_t k = 0; k < c.curve.size(); ++k) {
+      const Vec3 p = view.local(c.curve.points[k]), from_neck = c.curve.points[k] - v.neck->centre;
+      const double r = c.curve.radius[k], height = from_neck.dot(v.neck->normal);
+      const bool beside_neck = (from_neck - height * v.neck->normal).norm() > 0.45 * v.neck->diameter;
+      if (!beside_neck || height < -0.5 * r) continue;  // what lies below the neck is drawn away when blades close it
+      // What lies beside the plane in which the blades meet slips out from between them, unless it rises past them.
+      const double near_plane = std::clamp(1.5 - 0.75 * std::abs(p.x()) / r, 0.0, 1.0);
+      view.along_blade(behind_root, [&](const Vec3& b) {
+        const double beside = std::hypot(p.y() - b.y(), p.z() - b.z());
+        const bool trapped = height > 0.5 * r && std::abs(p.x()) < clip.half_open(b.z());
+        caught = std::max(caught, (trapped ? 1 : near_plane) * std::min(1.0, (r + half_blade - beside) / (2 * r)));
+      });
+    }
+  }
+  return caught;
+}
 
 std::vector<ClipPlan> clip_plans(const artery::Vessel& v, const Solid& floor, const std::vector<ClipShape>& clips,
                                  const Options& o, const Approach& approach) {
@@ -121,9 +193,12 @@ std::vector<ClipPlan> clip_plans(const artery::Vessel& v, const Solid& floor, co
         plan.clip = clip, plan.to_surgeon = to_surgeon, plan.needed = needed, plan.drawn_back = back;
         plan.lay(neck, {lift, slide - back, angle, mirrored});
         plan.off_view = std::acos(std::clamp(plan.pose.shaft.dot(to_surgeon), -1.0, 1.0)) / degree;
+        plan.dome_outside = outside_of_blades(v, clip, plan.pose);
+        plan.branch_caught = branch_between_blades(v, clip, plan.pose);
         plan.cost = std::pow(plan.off_view / 12, 2) + std::pow(angle / 60, 2) +
                     1.2 * std::max(0.0, needed - clip.blade) + 0.35 * std::max(0.0, clip.blade - needed - 1) +
-                    1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening) + 1.2 * back;
+                    1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening) + 1.2 * back + 8 * plan.branch_caught +
+                    1.5 * std::max(0.0, plan.dome_outside - yields);
         out.push_back(std::move(plan));
       }
     }
@@ -150,6 +225,16 @@ std::vector<Note> notes_of(const ClipPlan& plan) {
         fmt::format("The insula lies {:.1f} mm nearer behind the neck than the blades' tips need.", plan.drawn_back),
         "Expect a remnant behind; turn the vessel (--spin) or the blades (--turn), or choose a shorter clip "
         "(--clip)."));
+  if (plan.meets_dome())
+    notes.push_back(
+        problem("dome_in_the_way",
+                fmt::format("The sac reaches {:.1f} mm out of the space between the open blades.", plan.dome_outside),
+                "Turn the vessel (--spin) or the blades (--turn), or choose another clip (--clip)."));
+  if (plan.branch_caught > 0.3)
+    notes.push_back(problem("branch_between_blades",
+                            fmt::format("A branch beside the neck lies between the blades with {:.0f} % of its lumen.",
+                                        100 * plan.branch_caught),
+                            "Turn the vessel (--spin) or the blades (--turn), or choose a shorter clip (--clip)."));
   if (plan.off_view > 50)
     notes.push_back(problem("applier_off_view",
                             fmt::format("The applier comes {:.0f} degrees off the line of sight.", plan.off_view),

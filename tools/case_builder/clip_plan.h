@@ -15,7 +15,11 @@ struct ClipShape {
   std::string name, kind;
   double blade = 0, opening = 0;  ///< mm
   Vec3 middle, inward;            ///< of the blades; unit, from root to tip
-  Vec3 grip;
+  Vec3 grip;                      ///< as high as the hinge
+  double open_sine = 0;           ///< of the angle by which each jaw opens
+
+  /// From the plane between the blades to an open one where it is at the height z, mm.
+  double half_open(double z) const { return (grip.z() - z) * open_sine; }
 };
 /// All clips of meshes/clips with straight clamping lines that lie in the clip's own plane. Throws InputError.
 std::vector<ClipShape> read_clips(const fs::path& project);
@@ -46,8 +50,10 @@ struct ClipPlan {
   Vec3 to_surgeon = Vec3::UnitZ();  ///< unit
   BladePlacement at;
   ApplierPose pose;
-  double needed = 0;      ///< length that the flattened neck asks for, mm
-  double off_view = 0;    ///< of the shaft from the line of sight, degrees
+  double needed = 0;         ///< length that the flattened neck asks for, mm
+  double off_view = 0;       ///< of the shaft from the line of sight, degrees
+  double dome_outside = 0;   ///< how far the sac reaches out of the space between open blades on their way in, mm
+  double branch_caught = 0;  ///< share of a branch's lumen that the blades would close
   double drawn_back = 0;  ///< how far the tips stay short of where they should be, so that they keep off the floor, mm
   double cost = 0;        ///< the less, the better it seems to fit
 
@@ -56,7 +62,13 @@ struct ClipPlan {
   bool too_short() const;  ///< the blades do not reach over the flattened neck
   bool kept_back() const;  ///< the floor keeps the tips from the neck's far side
   bool leaves_remnant() const { return too_short() || kept_back(); }
+  bool meets_dome() const;  ///< open blades do not pass the sac on their way in
 };
+/// The share of its lumen that closed blades take of the branch which lies most between them, 0 to 1.
+double branch_between_blades(const artery::Vessel& vessel, const ClipShape& clip, const ApplierPose& pose);
+/// How far the sac reaches out of the space between the open blades of an applier that comes along its shaft, mm.
+double outside_of_blades(const artery::Vessel& vessel, const ClipShape& clip, const ApplierPose& pose);
+
 /// The options' choices for a placed vessel's neck, best first. The tips keep off `floor` (which does not
 /// give way: blades that run against it are lifted off the neck). Throws InputError when a wanted clip does not exist.
 std::vector<ClipPlan> clip_plans(const artery::Vessel& vessel, const Solid& floor, const std::vector<ClipShape>& clips,

@@ -74,6 +74,7 @@ class ClippingTrial {
       else if (id == "slit") out.slit = m.value;
       else if (id.ends_with(".flow_pct"))
         out.flows.emplace_back(id.substr(0, id.size() - std::string_view(".flow_pct").size()), 0.01 * m.value);
+      else if (id.ends_with(".stenosis_pct")) out.stenosis = std::max(out.stenosis, 0.01 * m.value);
       if (m.good < 0) tell(out.told, in_words(m));
     }
     for (const FaultState& f : log.faults()) {
@@ -88,18 +89,23 @@ class ClippingTrial {
   LoadedScene scene_;
 };
 
+/// So that there and back is the same.
+double rounded_sum(double a, double b) { return 1e-3 * std::round(1e3 * (a + b)); }
+
 /// What a surgeon would try next, the most promising first.
 std::vector<BladePlacement> corrections(const BladePlacement& at, const ClippingOutcome& seen, double fineness) {
+  const double step = fineness * (seen.shut() ? 1 : 2);
   const auto moved = [&](double lift, double slide, double turn) {
     BladePlacement p = at;
-    const auto sum = [](double a, double b) { return 1e-3 * std::round(1e3 * (a + b)); };  // there and back is the same
-    p.lift = sum(p.lift, fineness * lift), p.slide = sum(p.slide, fineness * slide);
-    p.turn = sum(p.turn, fineness * turn);
+    p.lift = rounded_sum(p.lift, step * lift), p.slide = rounded_sum(p.slide, step * slide);
+    p.turn = rounded_sum(p.turn, fineness * turn);
     return p;
   };
   const BladePlacement deeper = moved(0, 1.2, 0), back = moved(0, -1.2, 0), higher = moved(0.6, 0, 0),
                        lower = moved(-0.6, 0, 0), left = moved(0, 0, 15), right = moved(0, 0, -15);
-  if (seen.least_flow() < 0.9) return {higher, left, right, back, deeper, lower};
+  // Blades that narrow a branch, and leave the neck open, lie below it.
+  if (seen.least_flow() < 0.9 || (!seen.shut() && seen.stenosis > 0.3))
+    return {higher, left, right, back, deeper, lower};
   if (seen.tip_past_neck < 0.3) return {deeper, lower, left, right, higher, back};
   return {lower, deeper, higher, left, right, back};
 }
@@ -173,8 +179,9 @@ double ClippingOutcome::least_flow() const {
 }
 
 double ClippingOutcome::cost() const {
-  return (goal ? 0 : 3) + grade + 5 * remnant + 8 * std::max(0.0, 0.9 - least_flow()) + std::min(faults, 6) +
-         (ruptured ? 10 : 0) + 0.4 * std::max(0.0, -tip_past_neck) + 0.5 * slit;
+  return (goal ? 0 : 3) + grade + 5 * remnant + 8 * std::max(0.0, 0.9 - least_flow()) +
+         2 * std::max(0.0, stenosis - 0.3) + std::min(faults, 6) + (ruptured ? 10 : 0) +
+         0.4 * std::max(0.0, -tip_past_neck) + 0.5 * slit;
 }
 
 std::string clipping_motion(const ClipPlan& plan) {
@@ -185,17 +192,26 @@ std::string clipping_motion(const ClipPlan& plan) {
   return m.csv();
 }
 
+namespace {
+
+/// Whether two plans do nearly the same: blades of like length from like directions.
+bool alike(const ClipPlan& a, const ClipPlan& b) {
+  const bool turned_apart = std::abs(a.at.turn - b.at.turn) > 29;
+  const bool other_shape = std::abs(a.clip.inward.y() - b.clip.inward.y()) > 0.2 || a.clip.kind != b.clip.kind;
+  const bool bent = std::abs(a.clip.inward.y()) > 0.1;  // the others are the same when they are mirrored
+  return !turned_apart && !other_shape && !(bent && a.at.mirrored != b.at.mirrored) &&
+         std::abs(a.clip.blade - b.clip.blade) < 2.5;
+}
+
+}  // namespace
+
 std::vector<ClipPlan> distinct_plans(const std::vector<ClipPlan>& ranked, std::size_t most) {
   std::vector<ClipPlan> out;
   const auto add = [&](std::size_t until, bool whole_neck_alone) {
     for (const ClipPlan& p : ranked) {
       if (out.size() >= until) break;
       if (whole_neck_alone && p.leaves_remnant()) continue;
-      const bool like_another = std::any_of(out.begin(), out.end(), [&](const ClipPlan& o) {
-        const bool near = std::abs(o.at.turn - p.at.turn) < 29 && o.at.mirrored == p.at.mirrored;
-        return near && (o.clip.name == p.clip.name || std::abs(o.clip.blade - p.clip.blade) < 1.5);
-      });
-      if (!like_another) out.push_back(p);
+      if (std::none_of(out.begin(), out.end(), [&](const ClipPlan& o) { return alike(o, p); })) out.push_back(p);
     }
   };
   // Half of them are long enough for the whole neck, however far their applier is off the line of sight.
@@ -205,11 +221,28 @@ std::vector<ClipPlan> distinct_plans(const std::vector<ClipPlan>& ranked, std::s
   return out;
 }
 
+namespace {
+
+/// Each plan at its own height and farther up: how far a neck is drawn down when it is closed shows only in the play.
+std::vector<ClipPlan> at_two_heights(const std::vector<ClipPlan>& plans) {
+  constexpr double up = 1.2;  // mm
+  std::vector<ClipPlan> out;
+  for (const ClipPlan& p : plans) {
+    out.push_back(p);
+    out.back().at.lift = rounded_sum(p.at.lift, 0);
+    out.push_back(p);
+    out.back().at.lift = rounded_sum(p.at.lift, up);
+  }
+  return out;
+}
+
+}  // namespace
+
 RehearsedClip rehearse_clipping(const fs::path& scene, const fs::path& motion, const artery::Vessel& at_rest,
                                 const std::vector<ClipPlan>& tried, bool correct, int most_plays, Progress& progress) {
   write_text(motion, clipping_motion(tried.front()));  // the scene names it
   ClipSearch search(scene, at_rest, most_plays, progress);
-  search.play(tried, true);
+  search.play(correct ? at_two_heights(tried) : tried, true);
   while (correct && search.goes_on()) search.correct();
   return search.best();
 }

@@ -19,11 +19,13 @@ struct ClippingOutcome {
   double tip_past_neck = 0;                           ///< mm
   double slit = 0;                                    ///< between the blades, mm
   std::vector<std::pair<std::string, double>> flows;  ///< of each branch over that at rest
+  double stenosis = 0;                                ///< of the branch that is narrowed most, share of its lumen
   int faults = 0;                                     ///< forces included
   bool ruptured = false;
   std::string told;  ///< what is wrong, in words; empty: nothing
 
   double least_flow() const;
+  bool shut() const { return remnant < 1; }  ///< no blood passes the neck
   /// The goal without a fault, at grade 0 or 1, with less than a quarter of the neck open.
   bool sound() const { return goal && faults == 0 && grade <= 1 && remnant < 0.25; }
   /// The less, the better; comparable between placements of one case.

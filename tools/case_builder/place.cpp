@@ -24,6 +24,8 @@ void write_lobe(const fs::path& folder, const Lobe& lobe) {
   write_ply(folder / (lobe.name + "_surface.ply"), lobe.surface, "unit mm; a lobe parted for a vessel");
 }
 
+constexpr double easy = 2.5;  // of a plan's cost, below which no other place is looked for
+
 /// A placement with the lobes parted for it, and the clip that then seems to fit best.
 struct Fitted {
   Placement placement;
@@ -32,7 +34,9 @@ struct Fitted {
   std::vector<Room> rooms;
   std::vector<Note> notes;
   ClipPlan plan;
-  bool settles() const { return is_sound(rooms) && is_clear(rooms) && !plan.leaves_remnant(); }
+  bool settles() const {
+    return is_sound(rooms) && is_clear(rooms) && !plan.leaves_remnant() && !plan.meets_dome() && plan.cost < easy;
+  }
   double least_room() const {
     return std::min_element(rooms.begin(), rooms.end(), [](const Room& a, const Room& b) { return a.after < b.after; })
         ->after;

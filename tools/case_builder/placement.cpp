@@ -15,9 +15,10 @@ constexpr double reach = 12;  // mm, around the neck's position: the region in w
 constexpr double past_neck = 1.5, room_of_tips = 0.8;  // mm: of the tips past the flattened neck, and before the floor
 constexpr double behind_costs = 0.1;
 constexpr int coarse_spins = 24;
-constexpr std::size_t most_placements = 4;
-constexpr double least_apart = 0.7;  // rad, of the turns of two placements
-constexpr double limit = 4;          // mm, beyond which distances do not matter
+constexpr std::size_t most_placements = 4;  // of each lean
+constexpr double leans[] = {0, 0.5, 0.9};   // rad, of the sac away from the line of sight
+constexpr double least_apart = 0.7;         // rad, of the turns of two placements
+constexpr double limit = 4;                 // mm, beyond which distances do not matter
 
 Mat3 turn(double angle, const Vec3& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
 
@@ -35,8 +36,14 @@ struct Turn {
   Vec3 shift = Vec3::Zero();
 };
 
+/// The approach's direction of the sac, leaned away from the line of sight.
+Vec3 leaned(const Approach& a, double lean) {
+  const Vec3 axis = a.to_surgeon.cross(a.sac_points);
+  return turn(lean, axis.norm() > 0.1 ? axis.normalized() : Vec3(a.sac_points.unitOrthogonal())) * a.sac_points;
+}
+
 /// Rotation of the frame of the neck's normal and the parent's direction at the neck onto that of the shipped case.
-Mat3 base_rotation(const artery::Vessel& v, const Approach& a) {
+Mat3 base_rotation(const artery::Vessel& v, const Approach& a, const Vec3& sac_points) {
   const auto& parent = v.centrelines.front().curve;
   std::size_t near = 0;
   for (std::size_t k = 0; k < parent.size(); ++k)
@@ -44,7 +51,7 @@ Mat3 base_rotation(const artery::Vessel& v, const Approach& a) {
   const std::size_t back = near > parent.size() / 3 ? near - parent.size() / 3 : 0;
   const Vec3 arrives =
       near > back ? Vec3((parent.points[near] - parent.points[back]).normalized()) : parent.tangent(near);
-  return frame(a.sac_points, a.parent_arrives) * frame(v.neck->normal, arrives).transpose();
+  return frame(sac_points, a.parent_arrives) * frame(v.neck->normal, arrives).transpose();
 }
 
 /// Cost of a placement of the vessel in the fissure.
@@ -54,7 +61,6 @@ class PlacementCost {
   PlacementCost(const artery::Vessel& v, const Fissure& fissure, const Options& o)
       : wanted_spin(o.spin * std::numbers::pi / 180),
         approach_(fissure.approach),
-        base_(base_rotation(v, fissure.approach)),
         normal_(v.neck->normal),
         behind_neck_(0.25 * std::numbers::pi * v.neck->diameter + past_neck),
         o_(o) {
@@ -68,10 +74,16 @@ class PlacementCost {
     const auto& all = v.wall.mesh.vertices;
     for (std::size_t i = 0; i < all.size(); i += std::max<std::size_t>(1, all.size() / 350))
       samples_.push_back(all[i] - v.neck->centre);
+    lean(v, 0);
+  }
+  /// Turns the sac of all placements away from the line of sight, rad.
+  void lean(const artery::Vessel& v, double angle) {
+    axis_ = leaned(approach_, angle);
+    base_ = base_rotation(v, approach_, axis_);
   }
   Mat3 rotation(const Turn& t) const {
-    const Vec3 &axis = approach_.sac_points, u = axis.unitOrthogonal(), w = axis.cross(u);
-    return turn(t.tilt_a, u) * turn(t.tilt_b, w) * turn(t.spin, axis) * base_;
+    const Vec3 u = axis_.unitOrthogonal(), w = axis_.cross(u);
+    return turn(t.tilt_a, u) * turn(t.tilt_b, w) * turn(t.spin, axis_) * base_;
   }
   double operator()(const Turn& t) const {
     const Mat3 r = rotation(t);
@@ -102,6 +114,7 @@ class PlacementCost {
   };
   static constexpr std::size_t floor = 2;  // of the obstacles
   const Approach& approach_;
+  Vec3 axis_;  ///< where the sac points
   Mat3 base_;
   Vec3 normal_;         ///< of the neck, in the vessel's frame
   double behind_neck_;  ///< from its middle to the tips of blades that close it, mm
@@ -173,16 +186,21 @@ std::vector<Placement> find_placements(const artery::Vessel& v, const Fissure& f
   if (o.in_place) return {Placement()};
   if (!v.neck) throw InputError("a vessel without a neck has no place");
   progress.step("distances in the fissure");
-  const PlacementCost cost(v, fissure, o);
+  PlacementCost cost(v, fissure, o);
   progress.step("looking for the place");
-  std::vector<BestTurn> starts = apart(coarse_search(cost, o.keep_spin, progress));
-  for (BestTurn& t : starts) refine(cost, t);
-  std::stable_sort(starts.begin(), starts.end(), [](const BestTurn& a, const BestTurn& b) { return a.cost < b.cost; });
   std::vector<Placement> out;
-  for (const BestTurn& t : starts) {
-    Placement& p = out.emplace_back();
-    p.rotation = cost.rotation(t.turn);
-    p.shift = fissure.approach.neck + t.turn.shift - p.rotation * v.neck->centre;
+  for (const double lean : leans) {
+    if (o.keep_spin && lean != 0) continue;
+    cost.lean(v, lean);
+    std::vector<BestTurn> starts = apart(coarse_search(cost, o.keep_spin, progress));
+    for (BestTurn& t : starts) refine(cost, t);
+    std::stable_sort(starts.begin(), starts.end(),
+                     [](const BestTurn& a, const BestTurn& b) { return a.cost < b.cost; });
+    for (const BestTurn& t : starts) {
+      Placement& p = out.emplace_back();
+      p.rotation = cost.rotation(t.turn);
+      p.shift = fissure.approach.neck + t.turn.shift - p.rotation * v.neck->centre;
+    }
   }
   return out;
 }

@@ -57,7 +57,7 @@ void write_clipping(const SceneFacts& f, const CaseFolder& folder) {
 /// The best of the ranked plans in the running scene. A plan that an author has fixed is played, and left as it is.
 RehearsedClip rehearsed_clip(SceneFacts f, const CaseFolder& folder, const fs::path& project, const artery::Vessel& v,
                              const std::vector<ClipPlan>& ranked, const Options& o, Progress& progress) {
-  constexpr std::size_t most_plans = 6;
+  constexpr std::size_t most_plans = 4;
   progress.step("rehearsing the clipping");
   const bool fixed = o.lift && o.slide && o.turn;
   const std::vector<ClipPlan> tried = distinct_plans(ranked, fixed ? 1 : most_plans);
