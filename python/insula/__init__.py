@@ -23,11 +23,11 @@ from insula._core import (
     Simulation,
     State,
     Surface,
+    __version__,
 )
 from insula.loading import SceneError, load
 from insula.shipped import scenes
 
-__version__ = "0.1.0"
 __all__ = [
     "Body",
     "Channels",
