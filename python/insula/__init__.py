@@ -11,6 +11,8 @@
 All quantities are SI, and positions are in the frame of the scene. docs/python.md is the manual page.
 """
 
+import importlib.util
+
 from insula._core import (
     Body,
     Channels,
@@ -44,3 +46,6 @@ __all__ = [
     "load",
     "scenes",
 ]
+
+if importlib.util.find_spec("gymnasium"):
+    from insula import envs  # noqa: F401  registers the environments

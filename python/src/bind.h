@@ -37,6 +37,7 @@ void bind_bodies(nb::module_& m, RunClass& run);
 void bind_state(nb::module_& m, RunClass& run);
 void bind_geometry(nb::module_& m, RunClass& run);
 void bind_exercise(nb::module_& m, RunClass& run);
+void bind_picture(nb::module_& m, RunClass& run);
 
 /// For properties that return an array, which has an owner of its own.
 inline constexpr auto as_array = nb::rv_policy::automatic;

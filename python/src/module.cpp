@@ -41,4 +41,5 @@ NB_MODULE(_core, m) {
   bind_state(m, run);
   bind_geometry(m, run);
   bind_exercise(m, run);
+  bind_picture(m, run);
 }
