@@ -17,7 +17,7 @@ def known(channels: Mapping[str, float], name: str, otherwise: float) -> float:
 
 @dataclass(frozen=True)
 class Exercise:
-    """An exercise as a task. `progress` grows by 1 for each tenth or so of the work; its change is part of the reward."""
+    """An exercise as a task. `progress` grows by 1 for a tenth or so of the work; its change is part of the reward."""
 
     name: str
     scene: str

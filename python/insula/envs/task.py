@@ -77,7 +77,7 @@ class Task:
         if s.exercise_state == "failed":
             reward += FAILED
         self._goals, self._faults, self._promise = goals, faults, promise
-        return reward
+        return float(reward)
 
     def promise(self) -> float:
         """How far the exercise has come, and how near the hands are to what is next. Its change is a reward."""
@@ -117,8 +117,8 @@ class Task:
             at += size
         return parts
 
-    # Of each hand: tip from the middle of the field, x and z axes of the tool, hand from its tip, force and torque on the
-    # hand, contact force, buttons, way to what is next.
+    # Of each hand: tip from the middle of the field, x and z axes of the tool, hand from its tip, force and torque on
+    # the hand, contact force, buttons, way to what is next.
     OF_HAND = (("tip", 3), ("axes", 6), ("lead", 3), ("force", 6), ("contact", 1), ("buttons", 2), ("aim", 3))
 
     def size(self) -> int:
