@@ -268,7 +268,7 @@ void check_force_model(const std::filesystem::path& scene, const std::string& el
       m->reset();
       reference = bench.force(x).lpNorm<Eigen::Infinity>();
       check_state(findings, bench, x, seed);
-      if (m->internal()) check_stress(findings, bench, x);
+      check_stress(findings, bench, x);
       if (m->has_damping()) check_damping(findings, bench, x, seed);
     }
     findings.at("");

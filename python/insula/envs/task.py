@@ -45,7 +45,8 @@ class Task:
         s = self.simulation
         if seed is not None:
             s.draw_complications(seed)
-        s.reset()
+        if s.steps > 0:  # a scene that was just loaded is at its start
+            s.reset()
         self.decisions = 0
         for verb, argument in self.exercise.commands:
             s.command(verb, argument)
