@@ -170,6 +170,11 @@ if(gateway_src)
   set_target_properties(gateway PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 endif()
 
+option(INSULA_PYTHON "Build the Python package, where Python's headers and nanobind are" ON)
+if(INSULA_PYTHON)
+  add_subdirectory(python)
+endif()
+
 include(cmake/tests.cmake)
 include(cmake/install.cmake)
 # The artery generator and the case builder are quick to compile and are built wherever CGAL is; the slow tools only

@@ -45,6 +45,11 @@ class ForceModel : public Component {
                                  double /*h*/) {}
   /// Energy at positions x, J.
   virtual double energy(const double* x) = 0;
+  /// Adds the Cauchy stress of the model's elements at positions x (m) to `stress`, Pa, scene frame. `stress` has one
+  /// matrix for each tetrahedron of a solid, or for each wall triangle of a shell, in the order of the body. The stress
+  /// of a wall is its mean over the thickness, which is that at rest. It contains no damping. Returns false, and does
+  /// nothing, if the model has no stress (springs to the surroundings).
+  virtual bool add_stress(const double* /*x*/, std::vector<Mat3>& /*stress*/) const { return false; }
   /// Moves the stress-free configuration by u (3 values a node, m) while the rest configuration stays: the linear
   /// strain of u at rest is subtracted from the strain, in force, tangent and energy alike. Calls add up, and reset()
   /// keeps the result. Called between connect and the first step. Returns false, and does nothing, if the model has no

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/base/random.h"
+#include "core/mechanics/soft_body.h"
 #include "core/testing/contracts.h"
 #include "core/testing/example.h"
 #include "core/testing/findings.h"
@@ -226,6 +227,25 @@ void check_damping(Findings& findings, Bench& b, const VecX& x, std::uint64_t se
                   fmt::format("{:.3g}, the largest {:.3g} N s/m", values[0], values[b.n - 1]));
 }
 
+/// The sum of the stresses times the volumes of a solid's elements is the virial of its nodal forces.
+void check_stress(Findings& findings, Bench& b, const VecX& x) {
+  const auto* solid = dynamic_cast<const SoftBody*>(&b.body);
+  if (!solid) return;
+  const auto& tets = solid->rest().tets;
+  std::vector<Mat3> stress(tets.size(), Mat3::Zero());
+  if (!b.model.add_stress(x.data(), stress)) return;
+  const auto at = [&](int node) -> Vec3 { return x.segment<3>(3 * node); };
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    const Vec3 a = at(tets[t][0]), d = at(tets[t][1]) - a, e = at(tets[t][2]) - a, f = at(tets[t][3]) - a;
+    sum += d.cross(e).dot(f) / 6 * stress[t];
+  }
+  const VecX force = b.force(x);
+  Mat3 virial = Mat3::Zero();
+  for (int i = 0; i < b.body.nodes(); ++i) virial -= force.segment<3>(3 * i) * at(i).transpose();
+  findings.within("stress times volume = virial of the forces", (sum - virial).norm(), virial.norm(), 1e-9);
+}
+
 }  // namespace
 
 void check_force_model(const std::filesystem::path& scene, const std::string& element) {
@@ -248,6 +268,7 @@ void check_force_model(const std::filesystem::path& scene, const std::string& el
       m->reset();
       reference = bench.force(x).lpNorm<Eigen::Infinity>();
       check_state(findings, bench, x, seed);
+      check_stress(findings, bench, x);
       if (m->has_damping()) check_damping(findings, bench, x, seed);
     }
     findings.at("");

@@ -90,6 +90,7 @@ class CorotationalFem final : public ForceModel {
   void add_mass(std::vector<double>& mass, std::vector<double>& damping) const override;
   void linearise(const double* x, double* force, BlockMatrix* stiffness, double h, Tangent which) override;
   double energy(const double* x) override;
+  bool add_stress(const double* x, std::vector<Mat3>& stress) const override;
   bool set_natural_stretch(double a) override {
     natural_stretch_ = a;
     return true;
@@ -225,6 +226,34 @@ double CorotationalFem::energy(const double* x) {
     }
   }
   return sum;
+}
+
+// With P the first Piola-Kirchhoff stress, the sum of x_i f_i over the nodes of an element is -V P F^T = -V det(F)
+// sigma.
+bool CorotationalFem::add_stress(const double* x, std::vector<Mat3>& stress) const {
+  const ElementKernels& kernel = element_kernels();
+  const ElementMaterial m = material();
+  ElementWork work;
+  std::vector<double> force(12 * batch_lanes);
+  std::size_t t = 0;
+  for (const ElementBatch& batch : batches_) {
+    rotate(batch, x, work);
+    ElementBatch e = batch;
+    for (int l = 0; l < batch_lanes; ++l)
+      for (int k = 0; k < 4; ++k) e.node[k][l] = 4 * l + k;  // each element has nodes of its own here
+    std::fill(force.begin(), force.end(), 0.0);
+    const unsigned compressed = kernel.force(e, m, work, force.data());
+    for (int l = 0; l < e.count; ++l, ++t) {
+      if (compressed >> l & 1) stiffen(e, work, l, barrier_law(), force.data(), nullptr, 1, false);
+      const Mat3 f = matrix_of_lane(work.f, l);
+      Mat3 virial = Mat3::Zero();
+      const auto at = [&](int k) { return Eigen::Map<const Vec3>(x + 3 * batch.node[k][l]); };
+      for (int k = 1; k < 4; ++k)  // seen from node 0, since the forces add up to nothing
+        virial -= Eigen::Map<const Vec3>(&force[std::size_t(3 * (4 * l + k))]) * (at(k) - at(0)).transpose();
+      stress[t] += virial / (e.volume[l] * f.determinant());
+    }
+  }
+  return !batches_.empty();
 }
 
 }  // namespace

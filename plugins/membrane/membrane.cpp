@@ -87,6 +87,7 @@ class Membrane final : public ForceModel {
   void add_mass(std::vector<double>& mass, std::vector<double>& damping) const override;
   void linearise(const double* x, double* force, BlockMatrix* stiffness, double h, Tangent which) override;
   double energy(const double* x) override { return stretch_.energy(x) + bend_.energy(x); }
+  bool add_stress(const double* x, std::vector<Mat3>& stress) const override;
   bool prestrain(const double* u) override;
   double stiffness_damping() const override { return stiffness_time(); }
   double wall_thickness(int region) const override {
@@ -104,6 +105,7 @@ class Membrane final : public ForceModel {
   StretchTriangles stretch_;
   BendPatches bend_;
   std::vector<std::array<int, 3>> triangles_;
+  std::vector<int> of_wall_;  // number of each of them in the wall
   std::vector<double> area_;  // m2, one a triangle of its own
 };
 
@@ -168,12 +170,14 @@ void Membrane::attach(PrepareContext& context, DeformableBody& body) {
   std::vector<const StretchTriangles::Material*> of_triangle(wall.triangles.size(), nullptr);
   stretch_.clear();
   triangles_.clear();
+  of_wall_.clear();
   area_.clear();
   for (std::size_t t = 0; t < wall.triangles.size(); ++t) {
     const auto& v = wall.triangles[t];
     if (!owns(shell->region_of_triangle(v))) continue;
     of_triangle[t] = &material;
     triangles_.push_back(v);
+    of_wall_.push_back(int(t));
     area_.push_back(0.5 * (rest[std::size_t(v[1])] - rest[std::size_t(v[0])])
                               .cross(rest[std::size_t(v[2])] - rest[std::size_t(v[0])])
                               .norm());
@@ -205,6 +209,13 @@ void Membrane::linearise(const double* x, double* force, BlockMatrix* stiffness,
   const double scale = 1 + (h > 0 ? stiffness_time() / h : 0);
   stretch_.linearise(x, force, stiffness, scale, which);
   bend_.linearise(x, force, stiffness, scale, which, tangent.is("patches"));
+}
+
+bool Membrane::add_stress(const double* x, std::vector<Mat3>& stress) const {
+  std::vector<double> volume = area_;
+  for (double& v : volume) v *= thickness();
+  stretch_.add_stress(x, of_wall_, volume, stress);
+  return !triangles_.empty();
 }
 
 bool Membrane::prestrain(const double* u) {

@@ -65,6 +65,25 @@ TEST(Membrane, UniaxialTensionHasItsClosedForm) {
   EXPECT_TRUE(test::held("uniaxial tension, N", std::abs(pull - w.young * strain * w.thickness * 0.01), 1, 1e-12));
 }
 
+// In uniaxial tension the force over the section that is left is the Cauchy stress. It turns with the wall.
+TEST(Membrane, StressOfUniaxialTension) {
+  const Wall w{.thickness = 5e-4, .young = 2e5, .poisson = 0.35};
+  auto body = test::shell(test::plate(0.04, 0.01, 8, 3, Cut::shaken), w);
+  const double strain = 0.07;
+  const Mat3 turn = from_rotation_vector(Vec3(0.3, -1, 0.8)).toRotationMatrix();
+  VecX x = body->q();
+  for (int i = 0; i < body->nodes(); ++i)
+    x.segment<3>(3 * i) = turn * Vec3(x[3 * i] * (1 + strain), x[3 * i + 1] * (1 - w.poisson * strain), x[3 * i + 2]);
+  std::vector<Mat3> stress(body->wall_triangles().size(), Mat3::Zero());
+  ASSERT_TRUE(body->forces()[0]->add_stress(x.data(), stress));
+  const double expected = w.young * strain / (1 - w.poisson * strain);
+  for (const Mat3& s : stress) {
+    const Mat3 in_strip = turn.transpose() * s * turn;
+    EXPECT_NEAR(in_strip(0, 0), expected, 1e-9 * expected);
+    EXPECT_NEAR((in_strip - expected * Vec3::UnitX() * Vec3::UnitX().transpose()).norm(), 0, 1e-9 * expected);
+  }
+}
+
 TEST(Membrane, RigidMotionGivesNoForceOnAnyShape) {
   for (const TriMesh& mesh : {test::cylinder(0.002, 0.01, 12, 10, Cut::shaken), test::icosphere(0.003, 2),
                               test::plate(0.01, 0.01, 5, 5, Cut::criss_cross)}) {

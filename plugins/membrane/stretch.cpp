@@ -178,6 +178,17 @@ void StretchTriangles::linearise(const double* x, double* force, BlockMatrix* st
   }
 }
 
+void StretchTriangles::add_stress(const double* x, const std::vector<int>& of, const std::vector<double>& volume,
+                                  std::vector<Mat3>& stress) const {
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    const Triangle& t = triangles_[i];
+    const StretchOf<double> s = stretch_at(x, t.node, t.b);
+    const StressOf<double> p = stress_of(s, t.mu, t.lambda, t.pre);
+    const auto v = [](const double(&a)[3]) { return Eigen::Map<const Vec3>(a); };
+    stress[std::size_t(of[i])] += (v(p.p0) * v(s.f0).transpose() + v(p.p1) * v(s.f1).transpose()) / (volume[i] * s.det);
+  }
+}
+
 double StretchTriangles::energy(const double* x) const {
   double sum = 0;
   for (const Triangle& t : triangles_) {

@@ -40,6 +40,9 @@ class StretchTriangles {
   void bind(const BlockMatrix& a, const std::vector<int>& free_of_node);
   void linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which) const;
   double energy(const double* x) const;
+  /// Adds the Cauchy stress of triangle i, which has this volume at rest (m3), to stress[of[i]], Pa.
+  void add_stress(const double* x, const std::vector<int>& of, const std::vector<double>& volume,
+                  std::vector<Mat3>& stress) const;
   /// Subtracts the linear strain of displacement u from the strain. Both arguments have 3 values a node, m.
   void prestrain(const double* rest, const double* u);
 

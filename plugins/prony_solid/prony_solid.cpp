@@ -83,6 +83,7 @@ class PronySolid final : public ForceModel {
   bool has_damping() const override { return true; }
   void linearise_damping(const double* x, const double* v, double* force, BlockMatrix* damping, double h) override;
   double energy(const double* x) override;
+  bool add_stress(const double* x, std::vector<Mat3>& stress) const override;
   bool finish(const StepContext& context, const double* x) override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;
@@ -220,6 +221,17 @@ double PronySolid::energy(const double* x) {
     sum += e.volume * density_of_energy;
   }
   return sum;
+}
+
+bool PronySolid::add_stress(const double* x, std::vector<Mat3>& stress) const {
+  const Moduli law = moduli(young());
+  for (std::size_t t = 0; t < elements_.size(); ++t) {
+    const Mat3 f = elements_[t].gradient(x);
+    Mat3 s = law.stress(green_strain(f));
+    for (const Mat3& h : elements_[t].branch) s += h;
+    stress[t] += f * s * f.transpose() / f.determinant();
+  }
+  return !elements_.empty();
 }
 
 bool PronySolid::finish(const StepContext& context, const double* x) {

@@ -71,6 +71,7 @@ const Case cases[] = {
     {"springs_not_finite", "its force is not finite"},
     {"springs_allocate", "a step allocates memory, expected none"},
     {"springs_soften", "the step's tangent has a negative eigenvalue"},
+    {"springs_wrong_stress", "broken law: stress times volume = virial of the forces"},
     {"hold", ""},
     {"hold_nothing", "it holds nothing"},
     {"hold_lets_go", "it lets go what another support holds"},

@@ -20,7 +20,8 @@ enum class Mistake {
   state_not_in_hash,
   not_finite,
   allocates,
-  softens
+  softens,
+  wrong_stress
 };
 
 template <Mistake M>
@@ -58,6 +59,7 @@ class Springs final : public ForceModel {
     }
     return sum;
   }
+  bool add_stress(const double*, std::vector<Mat3>&) const override { return is(Mistake::wrong_stress); }
   double stiffness_damping() const override { return 0.01; }
   bool internal() const override { return is(Mistake::says_internal); }
   bool finish(const StepContext&, const double* x) override {
@@ -100,6 +102,7 @@ void add_springs(Registry& registry) {
   add.operator()<Mistake::not_finite>("springs_not_finite");
   add.operator()<Mistake::allocates>("springs_allocate");
   add.operator()<Mistake::softens>("springs_soften");
+  add.operator()<Mistake::wrong_stress>("springs_wrong_stress");
 }
 
 }  // namespace insula::mistakes

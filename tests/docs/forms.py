@@ -97,6 +97,11 @@ FORMS = (
     # What other tests do, step by step as on the page.
     Elsewhere(r"\./insula docs --html manual", "docs_html", "builds the site and asks its search"),
     Elsewhere(
+        r"\./insula wheel.*|python3 -m venv venv && venv/bin/pip install dist/.*|venv/bin/insula play",
+        "install_wheel",
+        "builds a wheel, installs it into a clean environment and runs its programs",
+    ),
+    Elsewhere(
         r"python3 -m venv .*|venv/bin/python examples/python/.*",
         "python_example",
         "makes that environment and runs the examples against an engine and a server",
@@ -201,6 +206,7 @@ FORMS = (
     ),
     Shorter(r"--random 60\b", "--random 4", "fewer probes"),
     Shorter(r"--steps (600|300|30)\b", "--steps 20", "fewer steps"),
+    Shorter(r"^(.*/steps_a_second\.py)$", r"\1 --steps 20", "fewer steps", "steps a second of 2 processes"),
     Shorter(r"^(\./insula bench .* --haptics .*)$", r"\1 --duration 0.1", "the first tenth of a second of the motion"),
     Shorter(r"--scaling --output folder", "--scaling --quick --output folder", "small sizes alone, as the page offers"),
     Shorter(

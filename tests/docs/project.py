@@ -10,7 +10,8 @@ import struct
 
 COPIED = ("curricula", "docs", "examples", "lcm_types", "meshes", "plugins", "scenes", "tools")
 # `./insula` without its building and installing: what is run is built already, and the rest of the script is as it is.
-BUILT = "packages() { :; }\nconfigure() { :; }\ncompile() { :; }\ncompile_configured() { :; }\nbuild_page() { :; }\n\n"
+BUILT = "packages() { :; }\nconfigure() { :; }\ncompile() { :; }\ncompile_configured() { :; }\nbuild_page() { :; }\n"
+BUILT += "python_environment() { :; }\n\n"
 WORDS = 'case "${1:-help}" in'
 
 
@@ -29,6 +30,7 @@ def make(source, build, folder):
     release.mkdir(parents=True)
     for name in ("bin", "build.ninja"):
         (release / name).symlink_to(build / name)
+    (folder / "build/python-env").symlink_to(source / "build/python-env")
     (release / "CTestTestfile.cmake").write_text('subdirs("%s")\n' % build, encoding="utf-8")
     for name in ("home", "run"):
         (folder / ".user" / name).mkdir(parents=True)

@@ -70,7 +70,13 @@ def python(runner, block):
         compile(placed(runner, block), "%s:%d" % (runner.name, block.line), "exec")
     except SyntaxError as e:
         return runner.that(False, block.line, "no Python: %s" % e)
-    return runner.run(["python3", "-c", placed(runner, block)], block.line, "the Python of line %d" % block.line)
+    words = ["python3", "-c", placed(runner, block)]
+    if re.search(r"^import insula$", words[2], re.M):
+        if not list((runner.build / "python/insula").glob("_core*.so")):
+            runner.skipped += 1
+            return print("the Python package is not built, not run: the Python of line %d" % block.line)
+        words[0] = runner.source / "build/python-env/bin/python"
+    return runner.run(words, block.line, "the Python of line %d" % block.line)
 
 
 def configured(runner, block):

@@ -33,6 +33,7 @@ FOLDERS = {
         "training/curriculum",
         "training/progress",
     },
+    "python": {"core", "engine"},
     "viewer/gateway": {"core", "core/bus", "training/store", "training/curriculum", "training/progress"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include "([\w./]+)"')

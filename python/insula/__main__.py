@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command `insula` of an installed package: hands all words to the program."""
+
+import os
+import pathlib
+import sys
+
+
+def main() -> None:
+    program = pathlib.Path(__file__).resolve().parent / "prefix" / "bin" / "insula"
+    if not program.exists():
+        sys.exit("error: this is no installed package; the program is ./insula of the source tree")
+    os.execv(program, [str(program), *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    main()

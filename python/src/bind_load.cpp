@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Loading, and what a scene says of itself.
+#include "python/src/bind.h"
+
+namespace insula::python {
+
+void bind_load(nb::module_& m, RunClass& run) {
+  m.def(
+      "load",
+      [](const std::string& text, const std::string& file, const std::vector<std::string>& plugins, int threads,
+         double time_step) {
+        if (threads < 0) throw std::invalid_argument("threads: at least 0");
+        Loaded loaded;
+        {
+          nb::gil_scoped_release free;
+          loaded = load_run(text, file, plugins, threads, time_step);
+        }
+        return std::pair(std::move(loaded.run), std::move(loaded.problems));
+      },
+      "text"_a, "file"_a, "plugins"_a, "threads"_a, "time_step"_a,
+      "Loads a scene. Returns the simulation, None after an error, and all problems. insula.load() calls it.");
+  run.def_prop_ro(
+         "title", [](const Run& r) { return r.simulation().scene().title(); }, "Title of the scene.")
+      .def_prop_ro(
+          "file", [](const Run& r) { return r.simulation().scene().file().string(); }, "File of the scene.")
+      .def_prop_ro(
+          "warnings", [](const Run& r) { return r.warnings(); }, "What the loader warned of.")
+      .def_prop_ro(
+          "time_step", [](const Run& r) { return r.simulation().h(); }, "Length of a step, s.")
+      .def("__repr__", [](const Run& r) {
+        return "<insula.Simulation \"" + r.simulation().scene().title() + "\" at " +
+               std::to_string(r.simulation().time()) + " s>";
+      });
+}
+
+}  // namespace insula::python
