@@ -9,6 +9,7 @@
 #include "engine/command_line/cases.h"
 #include "engine/command_line/commands.h"
 #include "engine/command_line/common_options.h"
+#include "engine/command_line/doctor.h"
 #include "engine/command_line/people.h"
 #include "engine/command_line/play.h"
 #include "engine/command_line/room_command.h"
@@ -38,7 +39,7 @@ struct Options : insula::CommandLine {
   std::string element;
   fs::path output, folder, plugin_folder;
   std::vector<fs::path> scenes;
-  bool curriculum = false, no_browser = false, no_reload = false, no_report = false, no_record = false,
+  bool json = false, curriculum = false, no_browser = false, no_reload = false, no_report = false, no_record = false,
        list_only = false;
   insula::ListOptions list;
   insula::NewPluginOptions new_plugin;
@@ -115,6 +116,12 @@ void add_devices(Options& c) {
       ->capture_default_str();
   command->add_flag("--yes", o.assume_yes, "with --test-force: begin without asking");
   command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_devices(x, c.devices); }; });
+}
+
+void add_doctor(Options& c) {
+  auto* command = c.app.add_subcommand("doctor", "what this machine lacks for the program, and how to get it");
+  command->add_flag("--json", c.json, "as JSON");
+  command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_doctor(x, c.json); }; });
 }
 
 void add_run(Options& c) {
@@ -284,6 +291,7 @@ void add_commands(Options& c) {
   add_texts(c);
   add_new_plugin(c);
   add_devices(c);
+  add_doctor(c);
   add_run(c);
   add_engine(c);
   insula::add_session_commands(c);

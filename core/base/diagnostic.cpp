@@ -97,8 +97,25 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
   return best;
 }
 
+namespace {
+
+constexpr std::string_view asks = "; did you mean ";
+
+}  // namespace
+
 std::string did_you_mean(std::string_view near) {
-  return near.empty() ? std::string() : "; did you mean " + in_quotes(near) + "?";
+  return near.empty() ? std::string() : std::string(asks) + in_quotes(near) + "?";
+}
+
+std::string did_you_mean_element(std::string_view near) {
+  return near.empty() ? std::string() : std::string(asks) + "<" + std::string(near) + ">?";
+}
+
+std::string proposed_name(std::string_view message) {
+  const std::size_t at = message.rfind(asks);
+  if (at == std::string_view::npos) return {};
+  const std::size_t begin = at + asks.size() + 1, end = message.find_first_of("\">", begin);
+  return end == std::string_view::npos ? std::string() : std::string(message.substr(begin, end - begin));
 }
 
 }  // namespace insula

@@ -43,5 +43,9 @@ class Diagnostics {
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates);
 /// The end of a message: "; did you mean "near"?", or nothing if `near` is empty.
 std::string did_you_mean(std::string_view near);
+/// The same of an element: "; did you mean <near>?".
+std::string did_you_mean_element(std::string_view near);
+/// The name that a message proposes in one of these two forms; empty: none.
+std::string proposed_name(std::string_view message);
 
 }  // namespace insula

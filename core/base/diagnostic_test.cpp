@@ -58,5 +58,13 @@ TEST(NearestName, SuggestsNothingFarFetched) {
   EXPECT_EQ(nearest_name("young", {}), "");
 }
 
+TEST(ProposedName, IsReadBackFromAMessage) {
+  EXPECT_EQ(proposed_name("no \"yuong\"" + did_you_mean("young")), "young");
+  EXPECT_EQ(proposed_name("no <clp>" + did_you_mean_element("clip")), "clip");
+  EXPECT_EQ(proposed_name("no \"a\"" + did_you_mean("ab") + " (use one of ab, cd)"), "ab");
+  EXPECT_EQ(proposed_name("no \"a\"" + did_you_mean("")), "");
+  EXPECT_EQ(proposed_name(""), "");
+}
+
 }  // namespace
 }  // namespace insula

@@ -172,9 +172,9 @@ std::string Param<Choice>::parse(std::string_view text) {
   if (std::find(choices.begin(), choices.end(), text) == choices.end()) {
     const std::vector<std::string> names(choices.begin(), choices.end());
     const std::string near = nearest_name(text, names);
-    if (!near.empty() && text.size() <= 64)
-      return in_quotes(text) + " is not a choice; did you mean \"" + near + "\"? (use one of " + joined(names) + ")";
-    return in_quotes(text) + " is not a choice (use one of " + joined(names) + ")";
+    const bool shown = text.size() <= 64;
+    return in_quotes(text) + " is not a choice" + did_you_mean(shown ? near : "") + " (use one of " + joined(names) +
+           ")";
   }
   value_ = text;
   return {};

@@ -107,7 +107,7 @@ void SceneBuilder::unknown_element(const Element& element, const Component& pare
   std::string near = nearest_name(element.name, here);
   if (near.empty()) near = nearest_name(element.name, anywhere);
   std::string text = "unknown element <" + shown(element.name) + ">";
-  if (!near.empty()) text += "; did you mean <" + near + ">?";
+  if (!near.empty()) text += did_you_mean_element(near);
   else text += " in <" + parent.element + "> (it may hold: " + first_names(here) + ")";
   diagnostics_.error(element.pos, text);
   lose_ids(element);

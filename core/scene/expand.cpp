@@ -260,7 +260,7 @@ fs::path resolve_file(const fs::path& folder, const fs::path& root, const std::s
   if (!fs::exists(status)) {
     error = in_quotes(name) + " does not exist";
     const std::string near = nearest_file(path, suggestions);
-    if (!near.empty()) error += "; did you mean \"" + (wanted.parent_path() / near).generic_string() + "\"?";
+    if (!near.empty()) error += did_you_mean((wanted.parent_path() / near).generic_string());
     return {};
   }
   if (!fs::is_regular_file(status)) {

@@ -99,8 +99,8 @@ bool Variables::replace(std::string& text, const Scope& scope, const SourcePos& 
       if (suggestions_.afford(scope.size()))
         for (const auto& [known, unused] : scope) names.push_back(known);
       const std::string near = nearest_name(name, names);
-      diagnostics_.error(
-          pos, "unknown variable " + in_quotes("$" + name) + (near.empty() ? "" : "; did you mean \"$" + near + "\"?"));
+      diagnostics_.error(pos,
+                         "unknown variable " + in_quotes("$" + name) + did_you_mean(near.empty() ? near : "$" + near));
       return false;
     }
     if (!expand(*it->second, pos)) return false;

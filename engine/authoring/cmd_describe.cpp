@@ -55,7 +55,7 @@ int cmd_describe(const CommandContext& context, const std::string& element) {
     for (const auto* other : context.registry.all()) names.push_back(other->element);
     const std::string near = nearest_name(element, names);
     context.err << "error: there is no element <" << shown(element) << ">"
-                << (near.empty() ? "; `insula list` shows all" : "; did you mean <" + near + ">?") << '\n';
+                << (near.empty() ? "; `insula list` shows all" : did_you_mean_element(near)) << '\n';
     return 2;
   }
   auto& out = context.out;

@@ -5,18 +5,6 @@
 
 namespace insula::python {
 
-namespace {
-
-/// The name in the end of a message: did you mean "name"?, or did you mean <name>?
-std::optional<std::string> nearest_in(const Diagnostic& d) {
-  static constexpr std::string_view before = "did you mean ";
-  const std::size_t at = d.text.rfind(before), from = at + before.size() + 1;
-  if (at == std::string::npos || from >= d.text.size()) return std::nullopt;
-  return d.text.substr(from, d.text.find(d.text[from - 1] == '<' ? '>' : '"', from) - from);
-}
-
-}  // namespace
-
 void bind_errors(nb::module_& m) {
   nb::exception<InputError>(m, "InputError", PyExc_ValueError);
   nb::class_<Diagnostic>(m, "Problem", "An error or a warning of a scene, with its place.")
@@ -30,7 +18,13 @@ void bind_errors(nb::module_& m) {
       .def_prop_ro(
           "column", [](const Diagnostic& d) { return d.pos.column; }, "Column, from 1; 0: the whole line.")
       .def_ro("message", &Diagnostic::text, "What is wrong.")
-      .def_prop_ro("nearest", &nearest_in, "The name that was probably meant, None if there is none.")
+      .def_prop_ro(
+          "nearest",
+          [](const Diagnostic& d) {
+            const std::string name = proposed_name(d.text);
+            return name.empty() ? std::nullopt : std::optional(name);
+          },
+          "The name that was probably meant, None if there is none.")
       .def("__str__",
            [](const Diagnostic& d) {
              Diagnostics one;

@@ -85,15 +85,6 @@ std::string check_one(const std::filesystem::path& file, const Registry& registr
   return diagnostics.ok() ? lines : std::string();
 }
 
-/// The name in 'did you mean "young"?' or 'did you mean <clip>?'.
-std::string proposed_name(const std::string& text) {
-  constexpr std::string_view asks = "did you mean ";
-  const std::size_t at = text.rfind(asks);
-  if (at == std::string::npos) return {};
-  const std::size_t begin = at + asks.size() + 1, end = text.find_first_of("\">", begin);
-  return end == std::string::npos ? std::string() : text.substr(begin, end - begin);
-}
-
 /// One curriculum, with the scenes and bands that it names.
 std::string check_curriculum(const std::filesystem::path& file, CurriculumFiles& sources, Diagnostics& diagnostics) {
   auto loaded = load_curriculum(file, sources);

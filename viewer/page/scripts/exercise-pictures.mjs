@@ -30,7 +30,7 @@ async function take(browser, scene, timeS) {
     }),
   );
   const page = await browser.newPage({ viewport: { width, height } });
-  await page.goto(`${address}&t=${timeS}&quality=high`);
+  await page.goto(`${address}&t=${timeS}&quality=high&cues=off`);
   await page.waitForTimeout(15_000);
   // The field alone: the widest part of the picture that lies inside of the microscope's disc.
   await page.addStyleTag({

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page of recorded sessions: replay.html?session=NAME [&with=NAME] [&ghost=NAME] [&t=SECONDS] [&quality=LEVEL]
-// [&debrief]. `with` stands beside it in step. The tools of `ghost` are drawn over it. `debrief` begins with the page
-// to print. Without a session it asks for one.
+// [&debrief] [&cues=off]. `with` stands beside it in step. The tools of `ghost` are drawn over it. `debrief` begins
+// with the page to print. `cues=off` leaves out plumb lines and marks. Without a session it asks for one.
 import '../hud/styles';
 import './replay.css';
 import { el } from '../hud/dom';
@@ -30,6 +30,7 @@ async function open(session: RecordedSession, kept: boolean): Promise<void> {
   const ghost = query.get('ghost');
   const shown = [new Side(session, quality)];
   if (other) shown.push(new Side(await named(other), quality));
+  for (const s of shown) s.view.cues = query.get('cues') !== 'off';
   if (ghost) shown[0]!.ghost = await openGhost(ghost);
   sides.replaceChildren(...shown.map((s) => s.root));
   for (const s of shown) await s.open();
