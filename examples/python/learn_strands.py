@@ -19,7 +19,6 @@ import gymnasium
 import numpy as np
 
 ENVIRONMENT = "insula/SylvianFissureRight-v0"
-DECISIONS = 150  # of an episode, 15 s
 PERIOD = 8  # decisions of the oscillation that the policy may use
 SPREAD = np.array([2, 0.5, 0.5, 0.5, 0.3, 0.3, 0.3])  # of the first generation: gain, amplitude, constant
 _env = None
@@ -61,11 +60,11 @@ POLICIES = {"chance": chance, "script": script}
 
 def episode(job):
     """Reward, share of the strands that are divided, and number of faults of an episode."""
-    policy, seed = job
+    policy, seed, decisions = job
     act = POLICIES[policy] if isinstance(policy, str) else numbers(policy)
     env, rng, total = environment(), np.random.default_rng(seed), 0.0
     seen, info = env.reset(seed=seed)
-    for k in range(DECISIONS):
+    for k in range(decisions):
         seen, reward, ended, _, info = env.step(act(seen, k, rng))
         total += reward
         if ended:
@@ -81,11 +80,11 @@ def learn(pool, options, write):
     start = time.monotonic()
     for generation in range(options.generations):
         drawn = [mean + deviation * rng.normal(size=len(SPREAD)) for _ in range(options.population)]
-        found = np.array(pool.map(episode, [(n, 1) for n in drawn], chunksize=1))
+        found = np.array(pool.map(episode, [(n, 1, options.decisions) for n in drawn], chunksize=1))
         order = np.argsort(-found[:, 0])[:best]
         elite = np.array([drawn[i] for i in order])
         mean, deviation = elite.mean(axis=0), elite.std(axis=0) + 0.05 * SPREAD
-        (at_mean,) = pool.map(episode, [(mean, 1)])
+        (at_mean,) = pool.map(episode, [(mean, 1, options.decisions)])
         write(generation + 1, (generation + 1) * (options.population + 1), time.monotonic() - start, found, at_mean)
     return mean
 
@@ -123,6 +122,8 @@ def main():
     options.add_argument("--population", type=int, default=12)
     options.add_argument("--workers", type=int, default=2)
     options.add_argument("--seed", type=int, default=1)
+    options.add_argument("--chance", type=int, default=8, help="episodes by chance")
+    options.add_argument("--decisions", type=int, default=150, help="of an episode, ten a second")
     o = options.parse_args()
     rows = []
     with multiprocessing.get_context("spawn").Pool(o.workers) as pool, open(o.curve, "w", newline="") as f:
@@ -136,9 +137,9 @@ def main():
             f.flush()
             print("generation %d: %s" % (generation, rows[-1]), flush=True)
 
-        by_chance = pool.map(episode, [("chance", seed) for seed in range(8)])
-        by_script = pool.map(episode, [("script", 1)])
-        learned = pool.map(episode, [(learn(pool, o, write), 1)])
+        by_chance = pool.map(episode, [("chance", seed, o.decisions) for seed in range(o.chance)])
+        by_script = pool.map(episode, [("script", 1, o.decisions)])
+        learned = pool.map(episode, [(learn(pool, o, write), 1, o.decisions)])
     summary("chance", by_chance)
     summary("script", by_script)
     summary("learned", learned)

@@ -25,8 +25,8 @@ from insula._core import (
     Simulation,
     State,
     Surface,
-    __version__,
 )
+from insula._core import version as __version__
 from insula.loading import SceneError, load
 from insula.shipped import scenes
 

@@ -20,7 +20,7 @@ def folder() -> pathlib.Path:
 
 def scenes() -> dict[str, pathlib.Path]:
     """Files of the shipped scenes by name: exercises, skill tasks, cases. "clipping" is 3_clipping.xml."""
-    found = {}
+    found: dict[str, pathlib.Path] = {}
     for kind in ("training", "skills", "cases"):
         for file in sorted((folder() / "scenes" / kind).rglob("*.xml")):
             if "<scene" in file.read_text(encoding="utf-8"):

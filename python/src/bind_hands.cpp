@@ -11,16 +11,10 @@ const HandReport& report_of(const Run& run, const std::string& hand) {
   return run.simulation().report().hands[std::size_t(hand_of(hand))];
 }
 
-std::optional<PoseTuple> device_pose(const Run& run, const std::string& hand) {
-  const Instrument* tool = run.simulation().instrument_of(hand_of(hand));
-  if (!tool) return std::nullopt;
-  return tuple_of(tool->device());
-}
-
-std::optional<PoseTuple> tip_pose(const Run& run, const std::string& hand) {
-  const Instrument* tool = run.simulation().instrument_of(hand_of(hand));
-  if (!tool) return std::nullopt;
-  return tuple_of(tool->pose());
+/// Throws std::invalid_argument if the hand is empty.
+const Instrument& tool_in(const Run& run, const std::string& hand) {
+  if (const Instrument* tool = run.simulation().instrument_of(hand_of(hand))) return *tool;
+  throw std::invalid_argument("the " + hand + " hand has no tool");
 }
 
 std::vector<std::string> tools_of(const Run& run, const std::string& hand) {
@@ -126,9 +120,12 @@ void bind_hands(nb::module_& m, RunClass& run) {
             r.set_hand(hand_of(hand), {});
           },
           "hand"_a, "No device moves the hand any more: its tool stays where it is.")
-      .def("hand_pose", &device_pose, "hand"_a,
-           "Position (m) and orientation (w x y z) of the hand's device; None if the hand has no tool.")
-      .def("tip_pose", &tip_pose, "hand"_a, "The same of the tool: its tip, with +z along the shaft to the handle.")
+      .def(
+          "hand_pose", [](const Run& r, const std::string& hand) { return tuple_of(tool_in(r, hand).device()); },
+          "hand"_a, "Position (m) and orientation (w x y z) of the hand's device. Raises ValueError for an empty hand.")
+      .def(
+          "tip_pose", [](const Run& r, const std::string& hand) { return tuple_of(tool_in(r, hand).pose()); }, "hand"_a,
+          "The same of the tool: its tip, with +z along the shaft to the handle.")
       .def(
           "tool",
           [](const Run& r, const std::string& hand) -> std::optional<std::string> {

@@ -28,7 +28,7 @@ int hand_of(const std::string& name) {
 NB_MODULE(_core, m) {
   using namespace insula::python;
   m.doc() = "The engine of Insula in this process.";
-  m.attr("__version__") = INSULA_VERSION;
+  m.attr("version") = INSULA_VERSION;
   bind_errors(m);
   RunClass run(m, "Simulation", "A loaded scene that can be stepped. Made by insula.load().");
   bind_load(m, run);

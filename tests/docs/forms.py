@@ -206,6 +206,12 @@ FORMS = (
     ),
     Shorter(r"--random 60\b", "--random 4", "fewer probes"),
     Shorter(r"--steps (600|300|30)\b", "--steps 20", "fewer steps"),
+    Shorter(
+        r"^(.*/learn_strands\.py .*)$",
+        r"\1 --generations 1 --population 2 --chance 1 --decisions 3",
+        "the beginning of a few episodes",
+        "learned",
+    ),
     Shorter(r"^(.*/steps_a_second\.py)$", r"\1 --steps 20", "fewer steps", "steps a second of 2 processes"),
     Shorter(r"^(\./insula bench .* --haptics .*)$", r"\1 --duration 0.1", "the first tenth of a second of the motion"),
     Shorter(r"--scaling --output folder", "--scaling --quick --output folder", "small sizes alone, as the page offers"),

@@ -6,10 +6,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-Progress = Callable[[Mapping[str, float]], float]
+from insula import Channels
+
+Progress = Callable[[Channels], float]
 
 
-def known(channels: Mapping[str, float], name: str, otherwise: float) -> float:
+def known(channels: Channels, name: str, otherwise: float) -> float:
     """A channel's value, or another number where it is not known now."""
     value = channels[name]
     return otherwise if value != value else value
@@ -28,21 +30,21 @@ class Exercise:
     most_steps: int = 600  # decisions of an episode
 
 
-def _divided(channels):
+def _divided(channels: Channels) -> float:
     return 10 * known(channels, "divide.divided", 0)
 
 
-def _opened(channels):
+def _opened(channels: Channels) -> float:
     return _divided(channels) + 2 * min(known(channels, "open.gap", 0) / 0.005, 1)
 
 
-def _clipped(channels):
+def _clipped(channels: Channels) -> float:
     shut = 1 - min(known(channels, "clip.grade", 5) / 5, 1)
     flow = min(known(channels, "clip.superior.flow", 1), known(channels, "clip.inferior.flow", 1), 1)
     return 8 * shut + 2 * flow
 
 
-def _stopped(channels):
+def _stopped(channels: Channels) -> float:
     bleeding = min(known(channels, "bleeding.rate", 0) / 1e-6, 1)  # of 60 ml/min
     return _clipped(channels) - 4 * bleeding
 

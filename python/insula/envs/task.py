@@ -63,8 +63,9 @@ class Task:
         for _ in range(self.steps):
             for name, action in actions.items():
                 self.hands[name].move(s, np.clip(action, -1, 1), s.time_step, self.middle)
-            for name in self.helped:
-                s.set_hand(name, *self.helper.at(name, s.time + s.time_step))
+            if self.helper:
+                for name in self.helped:
+                    s.set_hand(name, *self.helper.at(name, s.time + s.time_step))
             s.step()
         self.decisions += 1
         return self._reward(), s.exercise_state != "running"
@@ -82,7 +83,7 @@ class Task:
 
     def promise(self) -> float:
         """How far the exercise has come, and how near the hands are to what is next. Its change is a reward."""
-        nearest = [np.linalg.norm(self.aim(h)) for h in self.hands if self.has_aim(h)]
+        nearest = [float(np.linalg.norm(self.aim(h))) for h in self.hands if self.has_aim(h)]
         return self.exercise.progress(self.simulation.channels) - min(nearest, default=0.0) / FIELD
 
     def has_aim(self, hand: str) -> bool:
@@ -102,11 +103,15 @@ class Task:
         return away[np.argmin((away * away).sum(axis=1))].astype(float)
 
     def _channel_scales(self) -> tuple[np.ndarray, np.ndarray]:
-        low, scale = [], []
+        low: list[float] = []
+        scale: list[float] = []
         for i in self.simulation.channels.infos:
-            ranged = i.low is not None and i.high is not None and i.high > i.low
-            low += i.size * [i.low if ranged else 0.0]
-            scale += i.size * [i.high - i.low if ranged else SCALES.get(i.unit, 1.0)]
+            if i.low is not None and i.high is not None and i.high > i.low:
+                low += i.size * [i.low]
+                scale += i.size * [i.high - i.low]
+            else:
+                low += i.size * [0.0]
+                scale += i.size * [SCALES.get(i.unit, 1.0)]
         return np.array(low), np.array(scale)
 
     def _layout(self) -> dict[str, slice]:

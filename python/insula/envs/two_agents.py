@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import gymnasium
 import numpy as np
-import pettingzoo
+import pettingzoo  # type: ignore[import-untyped]
 
 from insula.envs.exercises import EXERCISES
 from insula.envs.hands import ACTIONS
