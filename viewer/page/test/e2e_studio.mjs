@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A case is made on the page of the case builder, with the real programs: a surface is dropped, the neck is set by
 // clicks, the case is built, builder and gateway are killed in between, and the exercise is played. Exit status 77: no
-// browser or no programs, skipped.
+// browser or no programs, skipped. INSULA_PICTURES names a folder for the pictures of docs/tutorial-case.md.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -10,7 +10,7 @@ import { axeFinds } from './axe.mjs';
 import { check, launch, patience, waitFor } from './browser.mjs';
 import { ownBus, Programs, root } from './programs.mjs';
 import { childrenOf, gatewayBelow } from './studio_processes.mjs';
-import { dropped, shots } from './studio_page.mjs';
+import { dropped, picture, shots, step, viewport } from './studio_page.mjs';
 
 const programs = new Programs();
 const data = mkdtempSync(join(tmpdir(), 'insula_studio_'));
@@ -46,6 +46,18 @@ async function sidesOfNeck(page, { centre, normal, diameter_mm: width }) {
   );
 }
 
+/** The clipping as a trainee begins it, drawn well. */
+async function pictureOfTheField(page) {
+  if (!process.env.INSULA_PICTURES) return;
+  await page.setViewportSize(viewport);
+  await page.goto(`${page.url()}${page.url().includes('?') ? '&' : '?'}quality=medium`);
+  await page.waitForFunction(() => window.__insula?.ready, null, patience);
+  await page.getByRole('button', { name: /^Try/ }).click();
+  for (const name of ['Not now', '✓ Read']) await page.getByRole('button', { name }).click();
+  await page.waitForTimeout(8000); // the picture becomes sharp
+  await picture(page, 'play');
+}
+
 let studio;
 const start = async () => {
   studio = programs.start('insula', ['studio', '--no-browser', '--port', '0', '--data', data], bus);
@@ -55,11 +67,12 @@ const start = async () => {
 const browser = await launch();
 try {
   let { address } = await start();
-  const page = await browser.newPage({ viewport: { width: 1366, height: 900 } });
+  const page = await browser.newPage({ viewport });
   await page.goto(address);
   await page.getByText('There are no projects yet.').waitFor(patience);
   assert.deepEqual(await axeFinds(page), []);
   await shot(page, 'empty');
+  await picture(page, 'drop');
 
   await dropped(page, 'picture.stl', Buffer.from('\x89PNG\r\n\x1a\n'));
   await page.getByText('this file is no surface').waitFor(patience);
@@ -74,6 +87,7 @@ try {
   assert.match(await page.locator('.steps').innerText(), /3,276 triangles[^]*openings/);
   assert.deepEqual(await axeFinds(page), []);
   await shot(page, 'surface');
+  await picture(page, 'surface');
   check('a dropped surface is shown with its openings and the proposed neck');
 
   const proposal = facts.neck.proposals[0];
@@ -84,6 +98,7 @@ try {
   const width = Math.hypot(...[0, 1, 2].map((k) => neck.points[k] - neck.points[k + 3]));
   assert.ok(width > 0.4 * proposal.diameter_mm && width < 1.6 * proposal.diameter_mm, `${width} mm between the clicks`);
   await shot(page, 'neck');
+  await picture(page, 'neck', step(page, '2. The neck'));
   check(`the neck is set by two clicks, ${width.toFixed(1)} mm apart`);
 
   await page.getByRole('button', { name: 'Undo' }).click();
@@ -121,6 +136,7 @@ try {
   await page.getByRole('button', { name: 'Build', exact: true }).click();
   await page.locator('.stages .now').waitFor(patience);
   await shot(page, 'building');
+  await picture(page, 'building', step(page, '3. The case'));
   await page.getByText('5. The result').waitFor(patience);
   const seconds = ((performance.now() - began) / 1000).toFixed(0);
   const result = await page.locator('.result').innerText();
@@ -132,6 +148,7 @@ try {
   );
   assert.deepEqual(await axeFinds(page), []);
   await shot(page, 'result');
+  await picture(page, 'result', step(page, '5. The result'));
   check(`the case is built in ${seconds} s and its report shown`);
 
   const [played] = await Promise.all([
@@ -141,6 +158,7 @@ try {
   await played.waitForURL(/^http/, patience);
   await played.waitForFunction(() => window.__insula?.ready, null, patience);
   await shot(played, 'played');
+  await pictureOfTheField(played);
   const cases = programs.insula(['cases', '--data', data]);
   assert.match(cases, /narrow_neck\s.*4 exercises, added/);
   check('the case is added, and its exercise opens');

@@ -2,6 +2,7 @@
 // What the page of the case builder asks the gateway for, and checks before use (viewer/gateway/studio.h).
 import { text as message } from '../languages/text';
 import { Api, contentOf, list, number, numberOrNull, object, text } from '../start/api';
+import { sent } from './folder/send';
 import { type ScanFacts, scanFactsOf } from './scan/block';
 
 export type Point = [number, number, number];
@@ -243,7 +244,7 @@ export function projectOf(json: unknown): Project {
 
 /** What the gateway may answer, for the catalogues (viewer/gateway: studio, studio_choices, surface_kind). */
 export const refusals = (): string[] => [
-  message('this file is no surface: STL, OBJ, PLY, OFF, glTF and VTP are taken'),
+  message('this file is no surface: STL, OBJ, PLY, OFF, glTF, VTP, VTU and HDF5 are taken'),
   message('this file is empty'),
   message('this file is too large: 700 MB are taken'),
   message('this file is too large: 220 MB are taken of a surface'),
@@ -293,9 +294,10 @@ export class StudioApi {
     return url.href;
   }
 
-  /** A new project. */
-  async upload(file: File): Promise<Project> {
+  /** A new project. share: gets how much of the file has gone, 0 to 1. */
+  async upload(file: File, signal: AbortSignal, share: (done: number) => void): Promise<Project> {
     const url = new URL(`api/studio/upload?file=${encodeURIComponent(file.name)}`, this.base);
-    return projectOf(await contentOf(await fetch(url, { method: 'PUT', body: file })));
+    const lost = () => new Error(message('The connection was lost: send the file again.'));
+    return projectOf(await contentOf(await sent(url, file, signal, share, lost)));
   }
 }
