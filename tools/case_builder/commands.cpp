@@ -211,9 +211,10 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
   CLI::App app{"Makes training cases from patients' vessels. For training only, never for the care of patients.",
                "insula case"};
   app.require_subcommand(1);
-  auto* fresh = app.add_subcommand("new",
-                                   "a case from a surface (STL, OBJ, PLY, glTF, VTP) or a volume (NIfTI, MetaImage, "
-                                   "NRRD, DICOM as a folder or zip)");
+  auto* fresh =
+      app.add_subcommand("new",
+                         "a case from a surface (STL, OBJ, PLY, OFF, glTF, VTP, VTU, HDF5) or a volume (NIfTI, "
+                         "MetaImage, NRRD, DICOM as a folder or zip)");
   fresh->add_option("name", line.name, "of the case: letters, digits, _ and -")->required();
   fresh->add_option("input", line.input, "file, or folder of a DICOM series")->required();
   fresh->add_option("--out", line.out, "folder that gets the case's folder (default: scenes/cases of the project)");

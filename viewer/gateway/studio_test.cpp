@@ -32,6 +32,8 @@ TEST(SurfaceKind, IsToldByContentNotByName) {
   EXPECT_EQ(surface_kind(off_file).extension, ".off");
   EXPECT_EQ(surface_kind("# made by hand\n\nv 0 0 0\n").extension, ".obj");
   EXPECT_EQ(surface_kind("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">").extension, ".vtp");
+  EXPECT_EQ(surface_kind("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\">").extension, ".vtu");
+  EXPECT_EQ(surface_kind("\x89HDF\r\n\x1a\n and what follows").extension, ".h5");
   EXPECT_EQ(surface_kind("{\"asset\": {\"version\": \"2.0\"}}").extension, ".gltf");
 }
 
@@ -41,7 +43,7 @@ TEST(SurfaceKind, OthersAreRefused) {
         std::string(84, '\0'), std::string("{\"a\": 1}"), std::string("glTF")})
     EXPECT_EQ(surface_kind(bytes).extension, "") << bytes;
   EXPECT_EQ(surface_kind("").refused, "this file is empty");
-  EXPECT_NE(surface_kind("<VTKFile type=\"UnstructuredGrid\">").refused.find("PolyData"), std::string::npos);
+  EXPECT_NE(surface_kind("<VTKFile type=\"ImageData\">").refused.find("PolyData"), std::string::npos);
   const char* outside = R"({"asset": {}, "buffers": [{"uri": "../../etc/passwd"}]})";
   EXPECT_NE(surface_kind(outside).refused.find("other files"), std::string::npos);
 }
