@@ -151,6 +151,62 @@ try {
   await picture(page, 'result', step(page, '5. The result'));
   check(`the case is built in ${seconds} s and its report shown`);
 
+  const remnant = page.getByLabel('Worst remnant that is accepted (Sindou grade)');
+  await remnant.waitFor(patience);
+  await remnant.fill('9');
+  await page.getByText('Outside the allowed range: 0 to 5').waitFor(patience);
+  await remnant.fill('1');
+  await remnant.press('Tab');
+  await page.getByRole('checkbox', { name: 'Fifteen minutes are over' }).uncheck();
+  await page.getByText('Choices have changed since: build again.').waitFor(patience);
+  const rules = ['3.clip.max_grade=1', '3.time=off'];
+  const ruled = () => waitFor('changes', async () => (await project(page, 'narrow_neck')).choices.rules.length === 2);
+  await ruled();
+  assert.deepEqual((await project(page, 'narrow_neck')).choices.rules, rules);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.waitForFunction(() => document.querySelectorAll('.rule input[type=checkbox]:not(:checked)').length === 0);
+  await page.getByRole('button', { name: 'Redo' }).click();
+  await ruled();
+  assert.deepEqual(await axeFinds(page), []);
+  await shot(page, 'goals');
+  await picture(page, 'goals', step(page, '6. Goals and limits'));
+  await page.getByRole('button', { name: 'Build', exact: true }).click();
+  await page.locator('.stages .now').waitFor(patience);
+  await page.getByText('Choices have changed since: build again.').waitFor({ state: 'hidden', ...patience });
+  const { built } = await project(page, 'narrow_neck');
+  const text = readFileSync(join(data, 'studio/narrow_neck', built.number, 'narrow_neck/3_clipping.xml'), 'utf8');
+  assert.match(text, /max_grade="1"/);
+  assert.doesNotMatch(text, /<time_limit/);
+  check('a goal and a limit are changed by a form, taken back, and built');
+
+  await page.locator('.clip select').selectOption('angled_60_6');
+  await page.getByLabel('Higher over the neck, mm').fill('-0.5');
+  await page.getByLabel('Higher over the neck, mm').press('Tab');
+  const clipped = () =>
+    waitFor('clip', async () => {
+      const { choices } = await project(page, 'narrow_neck');
+      return choices.clip === 'angled_60_6' && choices.lift_mm === -0.5;
+    });
+  await clipped();
+  await page.getByRole('button', { name: 'Close this clip' }).click();
+  await page.getByText('The clip is being closed …').waitFor(patience);
+  await page.getByText('Neck left open').waitFor(patience);
+  const { trial, command } = await project(page, 'narrow_neck');
+  assert.equal(trial.found.clip, 'angled_60_6');
+  assert.equal(trial.found.lift_mm, -0.5);
+  assert.ok(Object.keys(trial.found.flows_pct).length === 2, JSON.stringify(trial));
+  const away = trial.found.blades.flat().map((q) => Math.hypot(...q.map((x, k) => x - proposal.centre[k])));
+  assert.ok(Math.min(...away) < 9, `the blades are ${away} mm from the neck`);
+  assert.match(command, /--clip angled_60_6 --lift "-0.5 mm"/);
+  assert.deepEqual(await axeFinds(page), []);
+  await shot(page, 'clip');
+  await picture(page, 'clip', step(page, '7. Try a clip'));
+  await page.getByRole('button', { name: 'As proposed' }).click();
+  await page.getByText('Tried with other choices: close the clip again.').waitFor(patience);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await clipped();
+  check(`a clip is closed over the neck: ${Math.round(trial.found.remnant_pct)} % of it are left open`);
+
   const [played] = await Promise.all([
     page.waitForEvent('popup'),
     page.locator('[data-exercise="3_clipping.xml"]').click(),

@@ -7,7 +7,11 @@ export const shots =
   (prefix, options = { fullPage: true }) =>
   async (page, name) => {
     if (!process.env.INSULA_SHOTS) return;
-    await page.screenshot({ path: join(process.env.INSULA_SHOTS, `${prefix}_${name}.png`), ...options });
+    await page.screenshot({
+      path: join(process.env.INSULA_SHOTS, `${prefix}_${name}.png`),
+      timeout: 300_000,
+      ...options,
+    });
   };
 
 /** Large enough to read the page's steps beside the vessel, small enough to be read in the manual. */
