@@ -186,6 +186,11 @@ FORMS = (
         r"\1 --vertices 800",
         "a little finer; `intake --on` runs the rest",
     ),
+    Shorter(
+        r"^(\./insula case scenes .*--rule .*)$",
+        r"\1 --no-rehearse",
+        "the motions are not played again",
+    ),
     Shorter(r"^(\./insula case wall .* --neck.*) --on$", r"\1", "that stage alone; `intake --on` runs the rest"),
     Shorter(r"--motion none --duration 10\b", "--motion none --duration 1", "a part of it"),
     Shorter(

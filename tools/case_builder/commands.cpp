@@ -11,12 +11,14 @@
 #include "engine/sharing/case_archive.h"
 #include "tools/case_builder/approach.h"
 #include "tools/case_builder/brain.h"
+#include "tools/case_builder/clip_trial.h"
 #include "tools/case_builder/inspect.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/paint.h"
 #include "tools/case_builder/place.h"
 #include "tools/case_builder/project.h"
 #include "tools/case_builder/report.h"
+#include "tools/case_builder/rules.h"
 #include "tools/case_builder/scenes.h"
 #include "tools/case_builder/unit_options.h"
 #include "tools/case_builder/wall.h"
@@ -31,6 +33,7 @@ struct Line {
   std::string stage, name, input, folder, out;
   bool on = false;
   bool inspect = false;  ///< a look at the input, no case
+  bool clip = false;     ///< a clip is tried
 };
 
 // Options whose values have a unit. joined_values() joins the words of such a value.
@@ -193,6 +196,22 @@ void scene_options(CLI::App* app, Options& o) {
                    {.bare = "mm", .min = "-10 mm", .max = "10 mm", .doc = "of the blades over the neck's plane"});
   quantity<Length>(app, "--slide", [&o](double mm) { o.slide = mm; },
                    {.bare = "mm", .min = "-15 mm", .max = "15 mm", .doc = "of the blades' middle beyond the neck's"});
+  const auto is_change = [](const std::string& given) {
+    try {
+      read_rule_change(given);
+      return std::string();
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+  };
+  app->add_option_function<std::vector<std::string>>(
+         "--rule", [&o](const std::vector<std::string>& v) { o.rules = v; },
+         "a goal, fault, clock or complication of an exercise: EXERCISE.ID.PARAMETER=VALUE, such as "
+         "3.clip.max_grade=1, or EXERCISE.ID=off; may be given again (rules.json has all of them)")
+      ->take_all()
+      ->check(is_change);
+  app->add_flag_callback(
+      "--rules-as-proposed", [&o] { o.rules.clear(); }, "take back what --rule has changed");
   app->add_option("--plays", o.plays,
                   "placements of the clip that are played at most, until one succeeds (default: 16)")
       ->check(CLI::Range(1, 100));
@@ -211,9 +230,10 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
   CLI::App app{"Makes training cases from patients' vessels. For training only, never for the care of patients.",
                "insula case"};
   app.require_subcommand(1);
-  auto* fresh = app.add_subcommand("new",
-                                   "a case from a surface (STL, OBJ, PLY, glTF, VTP) or a volume (NIfTI, MetaImage, "
-                                   "NRRD, DICOM as a folder or zip)");
+  auto* fresh =
+      app.add_subcommand("new",
+                         "a case from a surface (STL, OBJ, PLY, OFF, glTF, VTP, VTU, HDF5) or a volume (NIfTI, "
+                         "MetaImage, NRRD, DICOM as a folder or zip)");
   fresh->add_option("name", line.name, "of the case: letters, digits, _ and -")->required();
   fresh->add_option("input", line.input, "file, or folder of a DICOM series")->required();
   fresh->add_option("--out", line.out, "folder that gets the case's folder (default: scenes/cases of the project)");
@@ -225,6 +245,12 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
   look->add_option("--out", line.out, "folder that gets what was found, in place of the print");
   intake_options(look, o);
   look->callback([&line] { line.inspect = true; });
+  auto* clip = app.add_subcommand(
+      "clip", "try a clip over the neck of a built case, and tell as JSON what it leaves; the case stays as it is");
+  clip->add_option("folder", line.folder, "of the case")->required();
+  clip->add_option("--out", line.out, "file that gets what was found, in place of the print");
+  scene_options(clip, o);
+  clip->callback([&line] { line.clip = true; });
   for (const char* stage : stages) {
     auto* again = app.add_subcommand(
         stage, std::string("do the stage ") + stage + " of a case again, from what the one before wrote");
@@ -265,6 +291,24 @@ void do_stage(const std::string& stage, const CaseFolder& folder, const Line& li
   if (stage == "report") run_report(folder, project, o, progress);
 }
 
+/// Options of a case, with those of the command line over them.
+Options options_of(CaseFolder& folder, const std::vector<std::string>& arguments, std::FILE* out, std::FILE* err) {
+  Options o = read_options(folder);
+  Line again;
+  parse(arguments, again, o, out, err);
+  return o;
+}
+
+int tell_clip(const Line& line, const std::vector<std::string>& arguments, std::FILE* out, std::FILE* err,
+              Progress& progress) {
+  CaseFolder folder{line.folder, {}};
+  const Options o = options_of(folder, arguments, out, err);
+  const Json found = try_clip(folder, find_project(folder.path), o, progress);
+  if (line.out.empty()) std::fprintf(out, "%s\n", found.dump(1).c_str());
+  else write_json(line.out, found);
+  return 0;
+}
+
 }  // namespace
 
 int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::FILE* err) {
@@ -277,6 +321,7 @@ int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::
       run_inspect(line.input, line.out, o, out, progress);
       return 0;
     }
+    if (line.clip) return tell_clip(line, arguments, out, err, progress);
     CaseFolder folder;
     if (line.stage.empty()) {
       if (!is_case_name(line.name))
@@ -290,10 +335,7 @@ int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::
                          folder.path.string());
     } else {
       folder.path = line.folder;
-      o = read_options(folder);
-      // A second time over the options as they were: what is given now replaces them.
-      Line again;
-      parse(arguments, again, o, out, err);
+      o = options_of(folder, arguments, out, err);
     }
     const fs::path project = find_project(folder.path);
     folder.opening = read_approach(project, o.approach).opening.file;

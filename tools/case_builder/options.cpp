@@ -73,6 +73,7 @@ Json to_json(const Options& o) {
   put(j, "lift", o.lift);
   put(j, "slide", o.slide);
   put(j, "turn", o.turn);
+  if (!o.rules.empty()) j["rules"] = o.rules;
   j["plays"] = o.plays;
   j["rehearse"] = o.rehearse;
   return j;
@@ -116,6 +117,7 @@ Options options_from_json(const Json& j) {
     take(j, "lift", o.lift);
     take(j, "slide", o.slide);
     take(j, "turn", o.turn);
+    take(j, "rules", o.rules);
     take(j, "plays", o.plays);
     take(j, "rehearse", o.rehearse);
   } catch (const nlohmann::json::exception& e) {

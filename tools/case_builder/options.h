@@ -64,6 +64,7 @@ struct Options {
   std::string clip;                         ///< of meshes/clips; empty: chosen for the neck
   std::optional<double> lift, slide, turn;  ///< of the clip's blades at the neck, mm, mm, degrees; none: chosen
   int plays = 16;                           ///< placements of the clip that are played, at most
+  std::vector<std::string> rules;           ///< changes of goals, faults and complications (rules.h)
   bool rehearse = true;                     ///< the exercises are played, to find scripted hands that succeed
 };
 

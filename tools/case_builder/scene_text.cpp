@@ -344,6 +344,10 @@ std::string rupture_exercise(const SceneFacts& f) {
 }  // namespace
 
 std::string exercise(const SceneFacts& f, int number) {
+  return with_rules(proposed_exercise(f, number), number, f.rules, f.folder);
+}
+
+std::string proposed_exercise(const SceneFacts& f, int number) {
   switch (number) {
     case 1: return opening_exercise(f);
     case 2: return dissection_exercise(f);

@@ -2,6 +2,7 @@
 // The text of a case's scene files.
 #pragma once
 #include "tools/case_builder/clip_plan.h"
+#include "tools/case_builder/rules.h"
 #include "tools/case_builder/scenes.h"
 
 namespace insula::case_builder {
@@ -26,10 +27,12 @@ struct SceneFacts {
   std::vector<std::string> strand_sets;
   double strand_share = 1;  ///< of the usual density of strands
   double strand_shift = 0;  ///< mm that their balls lie nearer to the surgeon
-  std::string site = {};    ///< Exercise::site
-  int difficulty = 0;       ///< Exercise::difficulty
-  bool opened = true;       ///< exercise 1 has scripted hands
-  bool rehearsed = false;   ///< exercise 2 has scripted hands
+  std::vector<RuleChange> rules = {};
+  fs::path folder = {};    ///< of the case
+  std::string site = {};   ///< Exercise::site
+  int difficulty = 0;      ///< Exercise::difficulty
+  bool opened = true;      ///< exercise 1 has scripted hands
+  bool rehearsed = false;  ///< exercise 2 has scripted hands
 };
 
 std::string artery_part(const SceneFacts& facts);
@@ -37,5 +40,7 @@ std::string field_part(const SceneFacts& facts);
 /// Strands of one kind about the aneurysm: to a lobe, or "branches".
 std::string strands(const SceneFacts& facts, const std::string& kind);
 std::string exercise(const SceneFacts& facts, int number);
+/// Without the author's changes of its rules.
+std::string proposed_exercise(const SceneFacts& facts, int number);
 
 }  // namespace insula::case_builder

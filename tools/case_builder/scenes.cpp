@@ -34,6 +34,7 @@ SceneFacts facts_of(const CaseFolder& folder, const artery::Vessel& v, const Opt
   f.approach = approach, f.opened = !approach.opening.motion.empty();
   f.name = folder.name;
   f.site = o.site, f.difficulty = o.difficulty;
+  f.rules = rule_changes(o), f.folder = folder.path;
   f.temporary = temporary_clip;
   const Json wall = read_json(folder.wall() / "notes.json");
   for (const Json& w : wall.at("walls")) f.walls.push_back({w.at("regions"), w.at("thickness_mm"), w.at("young_MPa")});
@@ -71,6 +72,18 @@ RehearsedClip rehearsed_clip(SceneFacts f, const CaseFolder& folder, const fs::p
                            progress);
 }
 
+/// Throws InputError if a change of a rule is none that its declaration allows, before the long work.
+void write_rules(const SceneFacts& f, const CaseFolder& folder) {
+  Json all = Json::array();
+  for (int k = folder.opening.empty() ? 2 : 1; k <= 4; ++k) {
+    exercise(f, k);
+    const fs::path file = exercise_file(folder, k);
+    all.push_back(
+        {{"exercise", k}, {"file", file.filename().string()}, {"rules", rules_of(proposed_exercise(f, k), file)}});
+  }
+  write_json(folder.path / "rules.json", all);
+}
+
 }  // namespace
 
 fs::path exercise_file(const CaseFolder& folder, int number) {
@@ -95,6 +108,9 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   const std::vector<ClipPlan> ranked = clip_plans(v, floor, clips, o, approach);
 
   SceneFacts f = facts_of(folder, v, o, approach);
+  f.clips = on_tray({ranked.front().clip.name});
+  f.assets = link_assets(folder, project, f.clips, f.approach);
+  write_rules(f, folder);
   RehearsedClip clipped{ranked.front(), {}, 0};
   if (o.rehearse) clipped = rehearsed_clip(f, folder, project, v, ranked, o, progress);
   const ClipPlan& plan = clipped.plan;
@@ -127,6 +143,10 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
                   {"slide_mm", rounded(plan.at.slide)},
                   {"turn_deg", rounded(plan.at.turn)}};
   if (o.rehearse) json["clipping"] = to_json(clipped.outcome);
+  json["clips"] = Json::array();
+  for (const ClipShape& c : clips)
+    if (c.kind != "temporary" && c.kind != "mini_temporary")
+      json["clips"].push_back({{"name", c.name}, {"blade_mm", rounded(c.blade)}});
   json["files_copied"] = f.assets.copied;
   json["notes"] = to_json(notes);
   write_json(folder.path / "scenes.json", json);

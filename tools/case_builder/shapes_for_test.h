@@ -2,11 +2,14 @@
 // Vessels for tests, made from functions: a straight tube with a sac, and what can be wrong with such a surface.
 // Millimetres.
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <string>
 
 #include "core/testing/block_mesh.h"
@@ -101,6 +104,62 @@ inline std::string vtp_text(const TriMesh& m) {
          "</DataArray></Points><Polys><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">" + nodes +
          "</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">" + offsets +
          "</DataArray></Polys></Piece></PolyData></VTKFile>\n";
+}
+
+/// Tetrahedra that fill a part of a grid: six to a cube whose middle is inside. Every other one is turned inside out,
+/// as FEniCS leaves them.
+inline TetMesh filled(const Vec3& from, const Vec3& to, double spacing,
+                      const std::function<bool(const Vec3&)>& inside) {
+  TetMesh m;
+  std::map<std::array<int, 3>, int> at;
+  const auto node = [&](int i, int j, int k) {
+    const auto [it, fresh] = at.try_emplace({i, j, k}, int(m.nodes.size()));
+    if (fresh) m.nodes.push_back(from + spacing * Vec3(i, j, k));
+    return it->second;
+  };
+  const Vec3 n = (to - from) / spacing;
+  for (int k = 0; k < n.z(); ++k)
+    for (int j = 0; j < n.y(); ++j)
+      for (int i = 0; i < n.x(); ++i) {
+        if (!inside(from + spacing * Vec3(i + 0.5, j + 0.5, k + 0.5))) continue;
+        std::array<int, 3> axis{0, 1, 2};
+        do {  // along the cube's edges from its first corner to its last
+          std::array<int, 3> p{i, j, k};
+          std::array<int, 4> tet{node(i, j, k), 0, 0, 0};
+          for (std::size_t s = 0; s < 3; ++s) ++p[std::size_t(axis[s])], tet[s + 1] = node(p[0], p[1], p[2]);
+          m.tets.push_back(tet);
+        } while (std::next_permutation(axis.begin(), axis.end()));
+      }
+  return m;
+}
+/// A tube with a sac on top, filled, with flat ends.
+inline TetMesh filled_tube(double spacing = 0.4) {
+  return filled(Vec3(-8, -2.8, -2.8), Vec3(8, 2.8, 6.4), spacing,
+                [](const Vec3& p) { return std::hypot(p.y(), p.z()) < 1.4 || (p - Vec3(0, 0, 3.4)).norm() < 2.4; });
+}
+
+/// A .vtu file: the tetrahedra, and after them some faces (type 5).
+inline std::string vtu_text(const TetMesh& m, const std::vector<std::array<int, 3>>& faces = {}) {
+  std::string points, nodes, offsets, types;
+  for (const Vec3& p : m.nodes)
+    points += std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
+  std::size_t end = 0;
+  const auto add = [&](const auto& cell, const char* type) {
+    for (const int v : cell) nodes += std::to_string(v) + " ";
+    offsets += std::to_string(end += cell.size()) + " ", types += type;
+  };
+  for (const auto& t : m.tets) add(t, "10 ");
+  for (const auto& t : faces) add(t, "5 ");
+  const auto array = [](const char* type, const char* name, const std::string& values) {
+    return std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" format=\"ascii\">" + values +
+           "</DataArray>";
+  };
+  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
+         "byte_order=\"LittleEndian\"><UnstructuredGrid><Piece NumberOfPoints=\"" +
+         std::to_string(m.nodes.size()) + "\" NumberOfCells=\"" + std::to_string(m.tets.size() + faces.size()) +
+         "\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">" + points +
+         "</DataArray></Points><Cells>" + array("Int64", "connectivity", nodes) + array("Int64", "offsets", offsets) +
+         array("UInt8", "types", types) + "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
 }
 
 /// A NIfTI file of bytes; `value` at voxel indices, the first of which lies at `origin`.

@@ -4,8 +4,28 @@
 #include "core/model/formats/file_bytes.h"
 #include "core/model/geometry/box_tree.h"
 #include "tools/case_builder/vtp_reader.h"
+#include "tools/case_builder/vtu_surface.h"
+#ifdef INSULA_WITH_HDF5
+#include "tools/case_builder/hdf5_surface.h"
+#endif
 
 namespace insula::case_builder {
+
+namespace {
+
+TriMesh read_file(const std::filesystem::path& file) {
+  const std::string kind = lower_extension(file);
+  if (kind == ".vtp") return read_vtp(file);
+  if (kind == ".vtu") return read_vtu_surface(file);
+  if (kind != ".h5" && kind != ".hdf5") return read_surface(file, 1.0);
+#ifdef INSULA_WITH_HDF5
+  return read_hdf5_surface(file);
+#else
+  fail(file, "needs HDF5 (Debian: libhdf5-dev), which was not there when this program was built");
+#endif
+}
+
+}  // namespace
 
 bool is_in_metres(const std::filesystem::path& file) {
   const std::string kind = lower_extension(file);
@@ -17,7 +37,7 @@ double unit_mm(const std::filesystem::path& file, const std::optional<double>& g
 }
 
 TriMesh read_any_surface(const std::filesystem::path& file, double unit) {
-  TriMesh m = lower_extension(file) == ".vtp" ? read_vtp(file) : read_surface(file, 1.0);
+  TriMesh m = read_file(file);
   for (Vec3& p : m.vertices) p *= unit;
   return m;
 }

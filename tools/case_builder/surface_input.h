@@ -12,7 +12,7 @@ namespace insula::case_builder {
 bool is_in_metres(const std::filesystem::path& file);
 /// Millimetres a unit of the file: what was given, else what the format says, else 1.
 double unit_mm(const std::filesystem::path& file, const std::optional<double>& given);
-/// Every format of read_surface, and VTP; mm. Throws InputError.
+/// Every format of read_surface, VTP, VTU and HDF5; mm. Throws InputError.
 TriMesh read_any_surface(const std::filesystem::path& file, double unit_mm);
 /// Diagonal of the box around all vertices; 0 without any.
 double extent_of(const TriMesh& mesh);

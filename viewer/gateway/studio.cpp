@@ -19,7 +19,6 @@ using Kind = StudioJob::Kind;
 constexpr auto inspect_limit = std::chrono::minutes(5);
 constexpr auto build_limit = std::chrono::hours(2);
 constexpr const char* found_in = "inspect";
-constexpr const char* at_work = "the case is at work; wait, or cancel it";
 constexpr const char* damaged = "the project's description is damaged";
 
 std::string state_of(const StudioProject& p, const char* what) {
@@ -84,10 +83,13 @@ Json Studio::built_json(const StudioProject& p) const {
   const fs::path folder = case_folder(p);
   if (folder.empty()) return nullptr;
   const Json report = read_json(folder / "report.json"), scenes = read_json(folder / "scenes.json");
+  const Json rules = read_json(folder / "rules.json");
   return {{"current", p.work["built"].value("choices", Json()) == p.choices()},
           {"number", p.work["built"].value("folder", "")},
           {"report", report.is_object() ? report : Json::object()},
           {"clip", scenes.is_object() && scenes.contains("clip") ? scenes["clip"] : Json()},
+          {"clips", scenes.is_object() && scenes.contains("clips") ? scenes["clips"] : Json::array()},
+          {"rules", rules.is_array() ? rules : Json::array()},
           {"exercises", exercises_in(folder)}};
 }
 
@@ -113,6 +115,8 @@ ApiAnswer Studio::shown(const StudioProject& p) const {
   if (job(p.name, Kind::add)) play = {{"state", "adding"}, {"url", ""}, {"error", ""}};
   else if (const auto it = add_error_.find(p.name); it != add_error_.end())
     play = {{"state", "ended"}, {"url", ""}, {"error", it->second}};
+  Json trial = work("trial", job(p.name, Kind::trial));
+  add_trial(p, trial);
   return answer_with(Json{{"name", p.name},
                           {"file", p.file},
                           {"choices", p.choices()},
@@ -123,6 +127,7 @@ ApiAnswer Studio::shown(const StudioProject& p) const {
                           {"inspect", inspected},
                           {"build", work("build", job(p.name, Kind::build))},
                           {"built", built_json(p)},
+                          {"trial", trial},
                           {"play", play}});
 }
 
@@ -212,6 +217,7 @@ void Studio::ended(const std::string& name, const StudioJob& job) {
   std::optional<StudioProject> p = projects_.read(name);
   if (!p) return;
   if (job.kind() == Kind::scan) return scan_ended(*p, job);
+  if (job.kind() == Kind::trial) return trial_ended(*p, job);
   Json& work = p->work[job.kind() == Kind::build ? "build" : "inspect"];
   std::error_code error;
   if (job.succeeded() && job.kind() == Kind::inspect) {
@@ -262,6 +268,7 @@ ApiAnswer Studio::change(StudioProject& p, std::string_view path, const Json& bo
 ApiAnswer Studio::act(std::string_view path, StudioProject& p, const Json& body) {
   if (path == "choose" || path == "undo" || path == "redo") return change(p, path, body);
   if (path == "build") return build(p);
+  if (path == "try") return try_clip(p);
   if (path == "again") {
     if (jobs_.count(p.name)) return refusal(409, at_work);
     inspect(p);

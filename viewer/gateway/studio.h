@@ -38,11 +38,11 @@ class Studio {
   ///   project?name=   {name, file, choices, undo, redo, command, scan: null or {state, error, facts},
   ///                    inspect: {state, error, number, facts},
   ///                    build: {state, error, seconds, stage, percent, step}, built: {current, report, exercises},
-  ///                    play: {state, url, error}}
+  ///                    trial: {state, error, found, current}, play: {state, url, error}}
   ApiAnswer get(std::string_view path, std::string_view query);
-  ///   choose {name, choices}; undo, redo, build, cancel, remove, again {name}; play {name, exercise}: the project, as
-  ///   above. again: the file is read once more. edit {name}: a copy of the built scenes. What begins with "scene" is
-  ///   answered by StudioScenes.
+  ///   choose {name, choices}; undo, redo, build, try, cancel, remove, again {name}; play {name, exercise}: the
+  ///   project, as above. again: the file is read once more. edit {name}: a copy of the built scenes. What begins with
+  ///   "scene" is answered by StudioScenes.
   ApiAnswer post(std::string_view path, const std::string& body);
   /// file=: name of the author's file. The new project. The content is moved to it.
   ApiAnswer upload(std::string_view query, const std::filesystem::path& content);
@@ -66,7 +66,13 @@ class Studio {
   void scan_ended(StudioProject& project, const StudioJob& job);
   void ended(const std::string& name, const StudioJob& job);
   void added(const std::string& name, const StudioJob& job);
+  ApiAnswer try_clip(StudioProject& project);
+  void trial_ended(StudioProject& project, const StudioJob& job);
+  /// What was found, and whether it is that of the present choices.
+  void add_trial(const StudioProject& project, nlohmann::json& trial) const;
   std::filesystem::path case_folder(const StudioProject& project) const;
+
+  static constexpr const char* at_work = "the case is at work; wait, or cancel it";
 
   StudioPlaces places_;
   StudioProjects projects_;

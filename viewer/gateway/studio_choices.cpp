@@ -18,6 +18,7 @@ using Json = nlohmann::json;
 constexpr double far_away = 1e6;  // mm
 constexpr std::size_t most_cuts = 12;
 constexpr std::size_t most_strokes = 100, most_points = 200;
+constexpr std::size_t most_rule_changes = 200;
 
 bool is_number(const Json& v, double least, double most) {
   return v.is_number() && std::isfinite(v.get<double>()) && v.get<double>() >= least && v.get<double>() <= most;
@@ -55,6 +56,22 @@ bool are_strokes(const Json& v) {
 
 bool is_one_of(const Json& v, std::initializer_list<const char*> values) {
   return v.is_string() && std::any_of(values.begin(), values.end(), [&](const char* one) { return v == one; });
+}
+
+/// As tools/case_builder/rules.h reads changes of a case's rules.
+bool are_rule_changes(const Json& v) {
+  return v.is_array() && v.size() <= most_rule_changes && std::all_of(v.begin(), v.end(), [](const Json& one) {
+           if (!one.is_string()) return false;
+           const std::string& s = one.get_ref<const std::string&>();
+           return s.size() > 4 && s.size() < 200 && s[0] >= '1' && s[0] <= '4' && s[1] == '.' &&
+                  s.find('=') != std::string::npos && s.find_first_of("\n\r") == std::string::npos;
+         });
+}
+
+bool is_clip(const Json& v) {
+  return v.is_string() && v.get_ref<const std::string&>().size() <= 64 &&
+         std::all_of(v.get_ref<const std::string&>().begin(), v.get_ref<const std::string&>().end(),
+                     [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
 struct Rule {
@@ -95,6 +112,14 @@ const std::map<std::string, Rule>& rules() {
       {"spin_deg",
        {[](const Json& v) { return v.is_null() || is_number(v, -360, 360); }, "a turn is from -360 to 360 degrees"}},
       {"rehearse", {is_switch, "the exercises are played, or not"}},
+      {"rules", {are_rule_changes, "a goal is changed by its exercise, its name and a value"}},
+      {"clip", {is_clip, "this is no clip"}},
+      {"lift_mm",
+       {[](const Json& v) { return v.is_null() || is_number(v, -10, 10); }, "blades are lifted by -10 to 10 mm"}},
+      {"slide_mm",
+       {[](const Json& v) { return v.is_null() || is_number(v, -15, 15); }, "blades are moved by -15 to 15 mm"}},
+      {"turn_deg",
+       {[](const Json& v) { return v.is_null() || is_number(v, -180, 180); }, "a turn is from -180 to 180 degrees"}},
       {"plays", {whole(1, 100), "from 1 to 100 places of the clip can be tried"}},
       {"site",
        {[](const Json& v) { return v.is_string() && v.get_ref<const std::string&>().size() <= 64; },
@@ -116,13 +141,30 @@ std::string plane(const Json& v) {
 }  // namespace
 
 Json first_choices() {
-  return {{"paint", Json::array()}, {"threshold", nullptr}, {"label", nullptr},
-          {"seed", nullptr},        {"around_mm", nullptr}, {"unit", ""},
-          {"mirror", false},        {"any_size", false},    {"cuts", Json::array()},
-          {"neck", nullptr},        {"inlet", nullptr},     {"rebuild_mm", nullptr},
-          {"keep_mm", 13},          {"vertices", 1650},     {"spin_deg", nullptr},
-          {"rehearse", true},       {"plays", 16},          {"site", ""},
-          {"difficulty", 0}};
+  return {{"paint", Json::array()},
+          {"threshold", nullptr},
+          {"label", nullptr},
+          {"seed", nullptr},
+          {"around_mm", nullptr},
+          {"unit", ""},
+          {"mirror", false},
+          {"any_size", false},
+          {"cuts", Json::array()},
+          {"neck", nullptr},
+          {"inlet", nullptr},
+          {"rebuild_mm", nullptr},
+          {"keep_mm", 13},
+          {"vertices", 1650},
+          {"spin_deg", nullptr},
+          {"rehearse", true},
+          {"plays", 16},
+          {"site", ""},
+          {"difficulty", 0},
+          {"rules", Json::array()},
+          {"clip", ""},
+          {"lift_mm", nullptr},
+          {"slide_mm", nullptr},
+          {"turn_deg", nullptr}};
 }
 
 Json changed_choices(Json choices, const Json& changes) {
@@ -156,6 +198,16 @@ std::vector<std::string> intake_words(const Json& c) {
   return out;
 }
 
+std::vector<std::string> clip_words(const Json& c) {
+  std::vector<std::string> out;
+  if (c["clip"] != "") out.insert(out.end(), {"--clip", c["clip"].get<std::string>()});
+  const auto add = [&](const char* option, const char* name, const char* unit) {
+    if (!c[name].is_null()) out.insert(out.end(), {option, fmt::format("{:g} {}", c[name].get<double>(), unit)});
+  };
+  add("--lift", "lift_mm", "mm"), add("--slide", "slide_mm", "mm"), add("--turn", "turn_deg", "deg");
+  return out;
+}
+
 std::vector<std::string> case_words(const Json& c) {
   std::vector<std::string> out = intake_words(c);
   const Json before = first_choices();
@@ -172,6 +224,9 @@ std::vector<std::string> case_words(const Json& c) {
   if (c["plays"] != before["plays"]) add("--plays", std::to_string(c["plays"].get<int>()));
   if (c["site"] != "") add("--site", c["site"].get<std::string>());
   if (c["difficulty"] != 0) add("--difficulty", std::to_string(c["difficulty"].get<int>()));
+  const std::vector<std::string> clip = clip_words(c);
+  out.insert(out.end(), clip.begin(), clip.end());
+  for (const Json& change : c["rules"]) add("--rule", change.get<std::string>());
   return out;
 }
 

@@ -12,7 +12,8 @@ namespace insula::gateway {
 ///   paint: [{erase, radius_mm, points: [[3]]}].
 /// - of the surface: unit, mirror, any_size, cuts: [[6]], rebuild_mm: null | number.
 /// - of the vessel: neck: null | {plane: [6]} | {points: [6]}, inlet: null | [3], keep_mm, vertices.
-/// - of the case: spin_deg: null | number, rehearse, plays, site, difficulty.
+/// - of the case: spin_deg: null | number, rehearse, plays, site, difficulty, rules: ["3.clip.max_grade=1"],
+///   clip: "" | name, lift_mm, slide_mm, turn_deg: null | number.
 nlohmann::json first_choices();
 
 /// Choices with some of them changed. Throws InputError, which says for the author what is wrong.
@@ -24,5 +25,7 @@ inline constexpr const char* paint_file = "paint.json";
 /// Options of `insula case` that say the same: those of its stage intake, and all.
 std::vector<std::string> intake_words(const nlohmann::json& choices);
 std::vector<std::string> case_words(const nlohmann::json& choices);
+/// Those of a clip that is tried over the neck.
+std::vector<std::string> clip_words(const nlohmann::json& choices);
 
 }  // namespace insula::gateway

@@ -12,7 +12,7 @@ namespace insula::gateway {
 class StudioJob {
  public:
   using Clock = std::chrono::steady_clock;
-  enum class Kind { scan, inspect, build, add };
+  enum class Kind { scan, inspect, build, add, trial };
   /// limit: after it, the program is ended.
   StudioJob(Kind kind, const std::vector<std::string>& command, std::chrono::seconds limit);
 

@@ -32,6 +32,8 @@ TEST(SurfaceKind, IsToldByContentNotByName) {
   EXPECT_EQ(surface_kind(off_file).extension, ".off");
   EXPECT_EQ(surface_kind("# made by hand\n\nv 0 0 0\n").extension, ".obj");
   EXPECT_EQ(surface_kind("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">").extension, ".vtp");
+  EXPECT_EQ(surface_kind("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\">").extension, ".vtu");
+  EXPECT_EQ(surface_kind("\x89HDF\r\n\x1a\n and what follows").extension, ".h5");
   EXPECT_EQ(surface_kind("{\"asset\": {\"version\": \"2.0\"}}").extension, ".gltf");
 }
 
@@ -41,7 +43,7 @@ TEST(SurfaceKind, OthersAreRefused) {
         std::string(84, '\0'), std::string("{\"a\": 1}"), std::string("glTF")})
     EXPECT_EQ(surface_kind(bytes).extension, "") << bytes;
   EXPECT_EQ(surface_kind("").refused, "this file is empty");
-  EXPECT_NE(surface_kind("<VTKFile type=\"UnstructuredGrid\">").refused.find("PolyData"), std::string::npos);
+  EXPECT_NE(surface_kind("<VTKFile type=\"ImageData\">").refused.find("PolyData"), std::string::npos);
   const char* outside = R"({"asset": {}, "buffers": [{"uri": "../../etc/passwd"}]})";
   EXPECT_NE(surface_kind(outside).refused.find("other files"), std::string::npos);
 }
@@ -58,6 +60,30 @@ TEST(StudioChoices, AreOptionsOfTheCommand) {
   EXPECT_EQ(case_words(c)[3], "1.000 2.000 3.000 mm 0.0000 0.0000 1.0000");
 }
 
+TEST(StudioChoices, ChangesOfRulesBecomeOptions) {
+  const json c = changed_choices(first_choices(), {{"rules", {"3.clip.max_grade=1", "4.chance=off"}}});
+  EXPECT_EQ(case_words(c), (std::vector<std::string>{"--rule", "3.clip.max_grade=1", "--rule", "4.chance=off"}));
+}
+
+TEST_F(StudioTest, AClipIsTriedOverTheNeckOfABuiltCase) {
+  const std::string name = ready();
+  EXPECT_EQ(ask("try", name).status, 409) << "it is not built";
+  ask("build", name);
+  wait(name, "build");
+  ask("choose", name, {{"choices", {{"clip", "angled_30_10"}, {"lift_mm", -0.5}}}});
+  EXPECT_EQ(ask("try", name).status, 200);
+  const json tried = wait(name, "trial")["trial"];
+  EXPECT_EQ(tried["state"], "done") << tried;
+  EXPECT_EQ(tried["found"]["grade"], 1);
+  EXPECT_EQ(tried["current"], true);
+  std::ifstream asked(folder_.path() / "bin/asked");
+  const std::string all(std::istreambuf_iterator<char>(asked), {});
+  EXPECT_NE(all.find("--clip angled_30_10 --lift -0.5 mm"), std::string::npos) << all;
+  ask("choose", name, {{"choices", {{"turn_deg", 15}}}});
+  EXPECT_EQ(project(name)["trial"]["current"], false);
+  EXPECT_EQ(ask("choose", name, {{"choices", {{"clip", "../x"}}}}).status, 400);
+}
+
 TEST(StudioChoices, WrongOnesAreRefused) {
   const json wrong[] = {{{"unit", "--brain"}},
                         {{"neck", {{"plane", {0, 0, 0, 0, 0, 0}}}}},
@@ -67,6 +93,9 @@ TEST(StudioChoices, WrongOnesAreRefused) {
                         {{"mirror", 1}},
                         {{"inlet", {1, 2}}},
                         {{"cuts", {{1, 2, 3}}}},
+                        {{"rules", "3.clip=off"}},
+                        {{"rules", json::array({"--out=/tmp"})}},
+                        {{"rules", json::array({"3.clip=off\n--out"})}},
                         json(3)};
   for (const json& changes : wrong)
     EXPECT_THROW(changed_choices(first_choices(), changes), InputError) << changes.dump();

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* no_surface = "this file is no surface: STL, OBJ, PLY, OFF, glTF and VTP are taken";
+constexpr const char* no_surface = "this file is no surface: STL, OBJ, PLY, OFF, glTF, VTP, VTU and HDF5 are taken";
 
 /// A header of 80 bytes, a count, and 50 bytes for each triangle.
 bool is_binary_stl(std::string_view bytes) {
@@ -73,6 +73,7 @@ SurfaceKind surface_kind(std::string_view bytes) {
   const std::string_view head = bytes.substr(0, 4096);
   const std::string_view begins = trim(head);
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return {".ply", ""};
+  if (bytes.starts_with("\x89HDF\r\n\x1a\n")) return {".h5", ""};
   if (bytes.starts_with("glTF")) return glb_kind(bytes);
   if (is_binary_stl(bytes)) return {".stl", ""};
   if (begins.starts_with("solid") && head.find("facet") != std::string_view::npos) return {".stl", ""};
@@ -80,6 +81,7 @@ SurfaceKind surface_kind(std::string_view bytes) {
   if (begins.starts_with("{")) return gltf_kind(bytes, ".gltf");
   if (begins.starts_with("<") && head.find("<VTKFile") != std::string_view::npos) {
     if (head.find("PolyData") != std::string_view::npos) return {".vtp", ""};
+    if (head.find("UnstructuredGrid") != std::string_view::npos) return {".vtu", ""};
     return {"", "this VTK file holds no surface: write it as PolyData (.vtp)"};
   }
   if (is_obj(bytes)) return {".obj", ""};

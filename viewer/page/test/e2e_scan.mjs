@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A scan is dropped onto the page of the case builder, with the real programs: slices and preview are shown, threshold
 // and seed are chosen by keys and mouse, ends are cut by drawn lines, and the neck is found. Exit status 77: no browser
-// or no programs, skipped.
+// or no programs, skipped. INSULA_PICTURES names a folder for the pictures of docs/tutorial-case.md.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { axeFinds } from './axe.mjs';
 import { check, launch, patience } from './browser.mjs';
 import { ownBus, Programs } from './programs.mjs';
-import { forkScan } from './scan_bytes.mjs';
-import { dropped, shots } from './studio_page.mjs';
+import { forkScan, forkSeries, scout } from './scan_bytes.mjs';
+import { dropped, droppedFrom, picture, shots, step, viewport } from './studio_page.mjs';
 
 const programs = new Programs();
 const data = mkdtempSync(join(tmpdir(), 'insula_scan_'));
@@ -46,17 +46,67 @@ async function surface(page, is = () => true) {
   return p;
 }
 
+/** A folder as a hospital's disc has it: two series, a list of files, and a text. */
+function disc() {
+  const folder = join(data, 'CD of Jane');
+  mkdirSync(join(folder, 'IMAGES'), { recursive: true });
+  forkSeries(person).forEach((image, k) => writeFileSync(join(folder, 'IMAGES', `${person}_${k}`), image));
+  scout(person).forEach((image, k) => writeFileSync(join(folder, 'IMAGES', `IM${k}`), image));
+  writeFileSync(join(folder, 'README.TXT'), 'Open with the viewer on this disc.');
+  return folder;
+}
+
+/** No file of the project names the person. */
+function namesNobody(project) {
+  const folder = join(data, 'studio', project);
+  for (const file of readdirSync(folder, { recursive: true, withFileTypes: true }))
+    if (file.isFile()) assert.ok(!readFileSync(join(file.parentPath, file.name)).includes(person), file.name);
+  assert.ok(!readdirSync(folder).includes('upload'));
+}
+
 const browser = await launch();
 try {
   const studio = programs.start('insula', ['studio', '--no-browser', '--port', '0', '--data', data], bus);
   const { address } = await programs.told(studio, /studio is at (\S+)/);
-  const page = await browser.newPage({ viewport: { width: 1366, height: 900 } });
+  const page = await browser.newPage({ viewport });
   await page.goto(address);
   await page.getByText('There are no projects yet.').waitFor(patience);
 
   await dropped(page, 'half.mha', Buffer.from('ObjectType = Image\nDimSize = 4 4 4\nElementDataFile = other.raw\n'));
   await page.getByText('this scan needs another file').waitFor(patience);
   check('a scan that names another file is refused');
+
+  await droppedFrom(page, disc());
+  const thin = page.getByRole('button', { name: '5 · CT · CTA thin · 72 images' });
+  await thin.waitFor(patience);
+  await page.getByRole('button', { name: '4 · CT · Scout · 2 images' }).waitFor(patience);
+  assert.deepEqual(await axeFinds(page), []);
+  await shot(page, 'series');
+  await picture(page, 'series');
+  const network = await page.context().newCDPSession(page);
+  const speed = (uploadThroughput) =>
+    network.send('Network.emulateNetworkConditions', {
+      offline: false,
+      latency: 0,
+      downloadThroughput: -1,
+      uploadThroughput,
+    });
+  await network.send('Network.enable');
+  await speed(100_000); // bytes a second
+  await thin.click();
+  await page.getByText('Sending CD of Jane.zip').waitFor(patience);
+  await page.waitForFunction(() => document.querySelector('.drop progress').value > 0.1, null, patience);
+  await page.getByRole('button', { name: 'Cancel' }).click();
+  await page.getByText('Cancelled.').waitFor(patience);
+  await speed(-1);
+  assert.deepEqual(await page.evaluate(async () => (await (await fetch('api/studio/projects')).json()).projects), []);
+  await page.locator('input[webkitdirectory]').setInputFiles(join(data, 'CD of Jane'));
+  await thin.click();
+  await page.getByText('96 × 96 × 72 voxels').waitFor(patience);
+  await shot(page, 'folder');
+  namesNobody('CD_of_Jane');
+  check('a folder with DICOM series is dropped, one of them is chosen, sent, cancelled, and sent again');
+  await page.getByRole('link', { name: 'All projects' }).click();
 
   const scan = forkScan();
   scan.write(person, 148, 'latin1'); // the description in the header of a NIfTI file
@@ -68,14 +118,12 @@ try {
   await page.waitForFunction(() => window.__scan.state.block.facts.threshold > 70, null, patience);
   assert.deepEqual(await axeFinds(page), []);
   await shot(page, 'opened');
+  await picture(page, 'scan', step(page, 'The vessel in the scan'));
   check(
     `a dropped scan is shown with ${first.triangles} triangles of the proposed threshold, in ${first.ms.toFixed(0)} ms`,
   );
 
-  const folder = join(data, 'studio', 'head_scan');
-  for (const file of readdirSync(folder, { recursive: true, withFileTypes: true }))
-    if (file.isFile()) assert.ok(!readFileSync(join(file.parentPath, file.name)).includes(person), file.name);
-  assert.ok(!readdirSync(folder).includes('upload'));
+  namesNobody('head_scan');
   check('no file of the project names the person of the scan');
 
   const slider = page.getByLabel('Threshold: vessel from this value up');
@@ -139,6 +187,7 @@ try {
   assert.ok(bridged.kept > whole.kept + 200, `${bridged.kept} after ${whole.kept}`);
   assert.ok(p.inspect.facts.size_mm[1] > 22, `the branch and the stroke span ${p.inspect.facts.size_mm[1]} mm`);
   await shot(page, 'painted');
+  await picture(page, 'brush', step(page, 'By hand'));
   await page.getByRole('button', { name: 'Undo' }).click();
   await surface(page, (c) => c.paint.length === 0);
   assert.equal((await found(page)).kept, whole.kept);
@@ -175,6 +224,7 @@ try {
     await page.mouse.up();
     await page.getByRole('button', { name: 'Cut', exact: true }).waitFor(patience);
     await shot(page, `cut_${k}`);
+    if (k === 1) await picture(page, 'cut', step(page, 'Ends of the vessel'));
     await page.getByRole('button', { name: 'Cut', exact: true }).click();
     p = await surface(page, (c) => c.cuts.length === k + 1);
     assert.equal(p.inspect.facts.openings.length, k + 1, JSON.stringify(p.inspect.facts.openings));
@@ -193,6 +243,17 @@ try {
   await page.getByRole('button', { name: 'Undo' }).click();
   await surface(page, (c) => c.cuts.length === 2);
   check('a cut is taken back');
+
+  await page.getByRole('button', { name: 'Redo' }).click();
+  await surface(page, (c) => c.cuts.length === 3);
+  await page.getByLabel('Play the exercises until scripted hands succeed').uncheck();
+  await page.getByRole('button', { name: 'Build', exact: true }).click();
+  p = await project(page, (q) => q.build.state !== 'running' && q.build.state !== '');
+  assert.equal(p.build.state, 'done', p.build.error);
+  await page.locator('[data-exercise="3_clipping.xml"]').waitFor(patience);
+  await shot(page, 'built');
+  assert.match(p.built.report.neck ? String(p.built.report.neck.diameter_mm) : '', /^[2-6]\.?\d*$/);
+  check(`the case is built from the scan, with a neck of ${p.built.report.neck.diameter_mm} mm`);
 } finally {
   await browser.close();
   await programs.end();

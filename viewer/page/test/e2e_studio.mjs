@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A case is made on the page of the case builder, with the real programs: a surface is dropped, the neck is set by
 // clicks, the case is built, builder and gateway are killed in between, and the exercise is played. Exit status 77: no
-// browser or no programs, skipped.
+// browser or no programs, skipped. INSULA_PICTURES names a folder for the pictures of docs/tutorial-case.md.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -10,7 +10,7 @@ import { axeFinds } from './axe.mjs';
 import { check, launch, patience, waitFor } from './browser.mjs';
 import { ownBus, Programs, root } from './programs.mjs';
 import { childrenOf, gatewayBelow } from './studio_processes.mjs';
-import { dropped, shots } from './studio_page.mjs';
+import { dropped, picture, shots, step, viewport } from './studio_page.mjs';
 
 const programs = new Programs();
 const data = mkdtempSync(join(tmpdir(), 'insula_studio_'));
@@ -46,6 +46,18 @@ async function sidesOfNeck(page, { centre, normal, diameter_mm: width }) {
   );
 }
 
+/** The clipping as a trainee begins it, drawn well. */
+async function pictureOfTheField(page) {
+  if (!process.env.INSULA_PICTURES) return;
+  await page.setViewportSize(viewport);
+  await page.goto(`${page.url()}${page.url().includes('?') ? '&' : '?'}quality=medium`);
+  await page.waitForFunction(() => window.__insula?.ready, null, patience);
+  await page.getByRole('button', { name: /^Try/ }).click();
+  for (const name of ['Not now', '✓ Read']) await page.getByRole('button', { name }).click();
+  await page.waitForTimeout(8000); // the picture becomes sharp
+  await picture(page, 'play');
+}
+
 let studio;
 const start = async () => {
   studio = programs.start('insula', ['studio', '--no-browser', '--port', '0', '--data', data], bus);
@@ -55,11 +67,12 @@ const start = async () => {
 const browser = await launch();
 try {
   let { address } = await start();
-  const page = await browser.newPage({ viewport: { width: 1366, height: 900 } });
+  const page = await browser.newPage({ viewport });
   await page.goto(address);
   await page.getByText('There are no projects yet.').waitFor(patience);
   assert.deepEqual(await axeFinds(page), []);
   await shot(page, 'empty');
+  await picture(page, 'drop');
 
   await dropped(page, 'picture.stl', Buffer.from('\x89PNG\r\n\x1a\n'));
   await page.getByText('this file is no surface').waitFor(patience);
@@ -74,6 +87,7 @@ try {
   assert.match(await page.locator('.steps').innerText(), /3,276 triangles[^]*openings/);
   assert.deepEqual(await axeFinds(page), []);
   await shot(page, 'surface');
+  await picture(page, 'surface');
   check('a dropped surface is shown with its openings and the proposed neck');
 
   const proposal = facts.neck.proposals[0];
@@ -84,6 +98,7 @@ try {
   const width = Math.hypot(...[0, 1, 2].map((k) => neck.points[k] - neck.points[k + 3]));
   assert.ok(width > 0.4 * proposal.diameter_mm && width < 1.6 * proposal.diameter_mm, `${width} mm between the clicks`);
   await shot(page, 'neck');
+  await picture(page, 'neck', step(page, '2. The neck'));
   check(`the neck is set by two clicks, ${width.toFixed(1)} mm apart`);
 
   await page.getByRole('button', { name: 'Undo' }).click();
@@ -121,6 +136,7 @@ try {
   await page.getByRole('button', { name: 'Build', exact: true }).click();
   await page.locator('.stages .now').waitFor(patience);
   await shot(page, 'building');
+  await picture(page, 'building', step(page, '3. The case'));
   await page.getByText('5. The result').waitFor(patience);
   const seconds = ((performance.now() - began) / 1000).toFixed(0);
   const result = await page.locator('.result').innerText();
@@ -132,7 +148,64 @@ try {
   );
   assert.deepEqual(await axeFinds(page), []);
   await shot(page, 'result');
+  await picture(page, 'result', step(page, '5. The result'));
   check(`the case is built in ${seconds} s and its report shown`);
+
+  const remnant = page.getByLabel('Worst remnant that is accepted (Sindou grade)');
+  await remnant.waitFor(patience);
+  await remnant.fill('9');
+  await page.getByText('Outside the allowed range: 0 to 5').waitFor(patience);
+  await remnant.fill('1');
+  await remnant.press('Tab');
+  await page.getByRole('checkbox', { name: 'Fifteen minutes are over' }).uncheck();
+  await page.getByText('Choices have changed since: build again.').waitFor(patience);
+  const rules = ['3.clip.max_grade=1', '3.time=off'];
+  const ruled = () => waitFor('changes', async () => (await project(page, 'narrow_neck')).choices.rules.length === 2);
+  await ruled();
+  assert.deepEqual((await project(page, 'narrow_neck')).choices.rules, rules);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await page.waitForFunction(() => document.querySelectorAll('.rule input[type=checkbox]:not(:checked)').length === 0);
+  await page.getByRole('button', { name: 'Redo' }).click();
+  await ruled();
+  assert.deepEqual(await axeFinds(page), []);
+  await shot(page, 'goals');
+  await picture(page, 'goals', step(page, '6. Goals and limits'));
+  await page.getByRole('button', { name: 'Build', exact: true }).click();
+  await page.locator('.stages .now').waitFor(patience);
+  await page.getByText('Choices have changed since: build again.').waitFor({ state: 'hidden', ...patience });
+  const { built } = await project(page, 'narrow_neck');
+  const text = readFileSync(join(data, 'studio/narrow_neck', built.number, 'narrow_neck/3_clipping.xml'), 'utf8');
+  assert.match(text, /max_grade="1"/);
+  assert.doesNotMatch(text, /<time_limit/);
+  check('a goal and a limit are changed by a form, taken back, and built');
+
+  await page.locator('.clip select').selectOption('angled_60_6');
+  await page.getByLabel('Higher over the neck, mm').fill('-0.5');
+  await page.getByLabel('Higher over the neck, mm').press('Tab');
+  const clipped = () =>
+    waitFor('clip', async () => {
+      const { choices } = await project(page, 'narrow_neck');
+      return choices.clip === 'angled_60_6' && choices.lift_mm === -0.5;
+    });
+  await clipped();
+  await page.getByRole('button', { name: 'Close this clip' }).click();
+  await page.getByText('The clip is being closed …').waitFor(patience);
+  await page.getByText('Neck left open').waitFor(patience);
+  const { trial, command } = await project(page, 'narrow_neck');
+  assert.equal(trial.found.clip, 'angled_60_6');
+  assert.equal(trial.found.lift_mm, -0.5);
+  assert.ok(Object.keys(trial.found.flows_pct).length === 2, JSON.stringify(trial));
+  const away = trial.found.blades.flat().map((q) => Math.hypot(...q.map((x, k) => x - proposal.centre[k])));
+  assert.ok(Math.min(...away) < 9, `the blades are ${away} mm from the neck`);
+  assert.match(command, /--clip angled_60_6 --lift "-0.5 mm"/);
+  assert.deepEqual(await axeFinds(page), []);
+  await shot(page, 'clip');
+  await picture(page, 'clip', step(page, '7. Try a clip'));
+  await page.getByRole('button', { name: 'As proposed' }).click();
+  await page.getByText('Tried with other choices: close the clip again.').waitFor(patience);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await clipped();
+  check(`a clip is closed over the neck: ${Math.round(trial.found.remnant_pct)} % of it are left open`);
 
   const [played] = await Promise.all([
     page.waitForEvent('popup'),
@@ -141,6 +214,7 @@ try {
   await played.waitForURL(/^http/, patience);
   await played.waitForFunction(() => window.__insula?.ready, null, patience);
   await shot(played, 'played');
+  await pictureOfTheField(played);
   const cases = programs.insula(['cases', '--data', data]);
   assert.match(cases, /narrow_neck\s.*4 exercises, added/);
   check('the case is added, and its exercise opens');

@@ -33,6 +33,82 @@ export function niftiBytes(size, spacing, value) {
   return out;
 }
 
+const numbers = (values, write, bytes) => {
+  const out = Buffer.alloc(bytes * values.length);
+  values.forEach((v, k) => out[write](v, bytes * k));
+  return out;
+};
+const ofTag = {
+  UI: (v) => Buffer.from(v.length % 2 ? `${v}\0` : v, 'latin1'),
+  US: (v) => numbers([v].flat(), 'writeUInt16LE', 2),
+  UL: (v) => numbers([v].flat(), 'writeUInt32LE', 4),
+};
+
+/** Elements [group, element, representation, value] in explicit little endian (PS3.5, chapter 7.1.2). */
+function elements(all) {
+  return Buffer.concat(
+    all.flatMap(([group, element, kind, value]) => {
+      const text = (v) => Buffer.from(v.length % 2 ? `${v} ` : v, 'latin1');
+      const bytes = Buffer.isBuffer(value) ? value : (ofTag[kind] ?? text)(value);
+      const long = kind === 'OW' || kind === 'OB';
+      const head = Buffer.alloc(long ? 12 : 8);
+      head.writeUInt16LE(group, 0);
+      head.writeUInt16LE(element, 2);
+      head.write(kind, 4, 'latin1');
+      if (long) head.writeUInt32LE(bytes.length, 8);
+      else head.writeUInt16LE(bytes.length, 6);
+      return [head, bytes];
+    }),
+  );
+}
+
+/** The images of a series as DICOM files: value(x, y, z) as for niftiBytes. uid: of the series. */
+export function dicomImages(size, spacing, value, { uid, description, person }) {
+  const [nx, ny, nz] = size;
+  const first = size.map((n, k) => (-(n - 1) / 2) * spacing[k]);
+  const image = '1.2.840.10008.5.1.4.1.1.2'; // CT
+  return Array.from({ length: nz }, (_, k) => {
+    const z = first[2] + k * spacing[2];
+    const pixels = Buffer.alloc(2 * nx * ny);
+    // To the left and backwards, as patients are scanned.
+    for (let j = 0; j < ny; j++)
+      for (let i = 0; i < nx; i++) {
+        const at = value(-(first[0] + i * spacing[0]), -(first[1] + j * spacing[1]), z);
+        pixels.writeInt16LE(Math.round(at), 2 * (j * nx + i));
+      }
+    const meta = elements([
+      [2, 2, 'UI', image],
+      [2, 3, 'UI', `${uid}.${k + 1}`],
+      [2, 0x10, 'UI', '1.2.840.10008.1.2.1'],
+    ]);
+    const set = elements([
+      [8, 0x16, 'UI', image],
+      [8, 0x18, 'UI', `${uid}.${k + 1}`],
+      [8, 0x60, 'CS', 'CT'],
+      [8, 0x103e, 'LO', description],
+      [0x10, 0x10, 'PN', person],
+      [0x20, 0xd, 'UI', '1.2.3.4'],
+      [0x20, 0xe, 'UI', uid],
+      [0x20, 0x11, 'IS', uid.split('.').at(-1)],
+      [0x20, 0x13, 'IS', String(k + 1)],
+      [0x20, 0x32, 'DS', [first[0], first[1], z].map((x) => x.toFixed(4)).join('\\')],
+      [0x20, 0x37, 'DS', '1\\0\\0\\0\\1\\0'],
+      [0x28, 2, 'US', 1],
+      [0x28, 4, 'CS', 'MONOCHROME2'],
+      [0x28, 0x10, 'US', ny],
+      [0x28, 0x11, 'US', nx],
+      [0x28, 0x30, 'DS', `${spacing[1]}\\${spacing[0]}`],
+      [0x28, 0x100, 'US', 16],
+      [0x28, 0x101, 'US', 16],
+      [0x28, 0x102, 'US', 15],
+      [0x28, 0x103, 'US', 1],
+      [0x7fe0, 0x10, 'OW', pixels],
+    ]);
+    const length = elements([[2, 0, 'UL', meta.length]]);
+    return Buffer.concat([Buffer.alloc(128), Buffer.from('DICM'), length, meta, set]);
+  });
+}
+
 /** The same numbers each time, -1 to 1. */
 function noise() {
   let state = 1;
@@ -53,13 +129,22 @@ export function isVessel(x, y, z) {
 }
 
 /** An angiogram: vessel 350, tissue 40, a speck of calcium of 600 aside, noise of 25 at most. */
-export function forkScan(size = [96, 96, 72], spacing = [0.4, 0.4, 0.4]) {
+function angiogram() {
   const more = noise();
-  return niftiBytes(size, spacing, (x, y, z) => {
+  return (x, y, z) => {
     const speck = Math.hypot(x + 12, y + 12, z + 8) < 1.2;
     return (speck ? 600 : isVessel(x, y, z) ? 350 : 40) + 25 * more();
-  });
+  };
 }
+const forkSize = [96, 96, 72];
+const forkSpacing = [0.4, 0.4, 0.4];
+export const forkScan = () => niftiBytes(forkSize, forkSpacing, angiogram());
+/** The same as a series, with the tag of a person. */
+export const forkSeries = (person) =>
+  dicomImages(forkSize, forkSpacing, angiogram(), { uid: '1.2.3.5', description: 'CTA thin', person });
+/** Two images of another series, which hold nothing. */
+export const scout = (person) =>
+  dicomImages([16, 16, 2], [10, 10, 10], () => 0, { uid: '1.2.3.4', description: 'Scout', person });
 
 /** The same in a head: bone of 900 around tissue, air outside. */
 export function headScan(size = [512, 512, 300], spacing = [0.4, 0.4, 0.5]) {

@@ -2,6 +2,9 @@
 // What the page of the case builder asks the gateway for, and checks before use (viewer/gateway/studio.h).
 import { text as message } from '../languages/text';
 import { Api, contentOf, list, number, numberOrNull, object, text } from '../start/api';
+import { sent } from './folder/send';
+import { type LibraryClip, libraryOf, type Trial, trialOf } from './clip/trial';
+import { type ExerciseRules, exerciseRulesOf } from './goals/rules';
 import { type ScanFacts, scanFactsOf } from './scan/block';
 
 export type Point = [number, number, number];
@@ -69,6 +72,13 @@ export interface Choices {
   rehearse: boolean;
   site: string;
   difficulty: number;
+  /** Changes of goals, faults and complications: "3.clip.max_grade=1". */
+  rules: string[];
+  /** That is tried, and built with; '': proposed. */
+  clip: string;
+  liftMm: number | null;
+  slideMm: number | null;
+  turnDeg: number | null;
 }
 
 /** state: '', 'running', 'done', 'failed', 'cancelled' or 'interrupted'. */
@@ -95,6 +105,8 @@ export interface Built {
   clipping: { grade: number; remnantPct: number } | null;
   problems: { id: string; text: string; whatToDo: string }[];
   exercises: string[];
+  rules: ExerciseRules[];
+  clips: LibraryClip[];
 }
 
 export interface Project {
@@ -110,6 +122,7 @@ export interface Project {
   facts: Facts | null;
   build: Work;
   built: Built | null;
+  trial: Trial;
   play: { state: string; url: string; error: string };
 }
 
@@ -156,6 +169,11 @@ function choicesOf(value: unknown): Choices {
     rehearse: c.rehearse === true,
     site: text(c.site),
     difficulty: number(c.difficulty),
+    rules: Array.isArray(c.rules) ? c.rules.map(text) : [],
+    clip: text(c.clip),
+    liftMm: numberOrNull(c.lift_mm),
+    slideMm: numberOrNull(c.slide_mm),
+    turnDeg: numberOrNull(c.turn_deg),
   };
 }
 
@@ -219,6 +237,8 @@ function builtOf(value: unknown): Built | null {
       whatToDo: text(p.what_to_do),
     })),
     exercises: b.exercises.map(text),
+    rules: exerciseRulesOf(b.rules),
+    clips: libraryOf(b.clips),
   };
 }
 
@@ -237,32 +257,13 @@ export function projectOf(json: unknown): Project {
     facts: factsOf(inspect.facts),
     build: workOf(p.build),
     built: builtOf(p.built),
+    trial: trialOf(workOf(p.trial), object(p.trial)),
     play: { state: text(play.state), url: text(play.url), error: text(play.error) },
   };
 }
 
-/** What the gateway may answer, for the catalogues (viewer/gateway: studio, studio_choices, surface_kind). */
-export const refusals = (): string[] => [
-  message('this file is no surface: STL, OBJ, PLY, OFF, glTF and VTP are taken'),
-  message('this file is empty'),
-  message('this file is too large: 700 MB are taken'),
-  message('this file is too large: 220 MB are taken of a surface'),
-  message('this scan needs another file: write it as one .nii file'),
-  message('this scan needs another file: write it as one .nrrd file'),
-  message('this scan needs another file: write it as one .mha file'),
-  message('this compressed file is no scan: NIfTI is taken'),
-  message('this glTF needs other files: write it as one .glb file'),
-  message('this VTK file holds no surface: write it as PolyData (.vtp)'),
-  message('this case is being built'),
-  message('the file must be read first'),
-  message('the case is at work; wait, or cancel it'),
-  message('the project cannot be written: is the disk full?'),
-  message('only for pages on this machine and instructors'),
-  message('exercises are played at the machine of the case builder'),
-];
-
 /** An act that changes a project. */
-export type Act = 'choose' | 'undo' | 'redo' | 'build' | 'cancel' | 'play' | 'again';
+export type Act = 'choose' | 'undo' | 'redo' | 'build' | 'try' | 'cancel' | 'play' | 'again';
 
 export class StudioApi {
   private readonly api: Api;
@@ -293,9 +294,10 @@ export class StudioApi {
     return url.href;
   }
 
-  /** A new project. */
-  async upload(file: File): Promise<Project> {
+  /** A new project. share: gets how much of the file has gone, 0 to 1. */
+  async upload(file: File, signal: AbortSignal, share: (done: number) => void): Promise<Project> {
     const url = new URL(`api/studio/upload?file=${encodeURIComponent(file.name)}`, this.base);
-    return projectOf(await contentOf(await fetch(url, { method: 'PUT', body: file })));
+    const lost = () => new Error(message('The connection was lost: send the file again.'));
+    return projectOf(await contentOf(await sent(url, file, signal, share, lost)));
   }
 }

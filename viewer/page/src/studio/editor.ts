@@ -7,12 +7,15 @@ import type { Act, Project, StudioApi } from './api';
 import { BuildPanel } from './build_panel';
 import { CasePanel } from './case_panel';
 import { FilePanel } from './file_panel';
+import { GoalsPanel } from './goals/goals_panel';
 import { NeckPanel } from './neck_panel';
 import { chosenPlane } from './neck_plane';
 import { ResultPanel } from './result_panel';
+import { ClipPanel } from './clip/clip_panel';
 import { CutPanel } from './scan/cut_panel';
 import { ScanStep } from './scan/scan_step';
 import { Views } from './scan/views';
+import type { ScenesApi } from './scene_editor/api';
 import { SurfaceView } from './surface_view';
 import { reason } from './wording';
 
@@ -48,6 +51,7 @@ export class Editor {
   constructor(
     private readonly api: StudioApi,
     private readonly name: string,
+    scenes: ScenesApi,
   ) {
     const asks: Asks = {
       choose: (choices) => void this.act('choose', { choices }),
@@ -65,6 +69,8 @@ export class Editor {
       new CasePanel(asks),
       new BuildPanel(asks),
       new ResultPanel(asks, api),
+      new GoalsPanel(asks, scenes),
+      new ClipPanel(asks, this.view),
     ];
     this.undo.onclick = () => void this.act('undo');
     this.redo.onclick = () => void this.act('redo');
@@ -85,7 +91,7 @@ export class Editor {
   }
 
   private key(e: KeyboardEvent): void {
-    const typing = e.target instanceof HTMLInputElement && e.target.type === 'text';
+    const typing = e.target instanceof HTMLInputElement && ['text', 'number'].includes(e.target.type);
     if (!(e.ctrlKey || e.metaKey) || typing || e.key.toLowerCase() !== 'z') return;
     e.preventDefault();
     void this.act(e.shiftKey ? 'redo' : 'undo');

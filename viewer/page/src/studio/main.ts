@@ -57,7 +57,7 @@ function show(): void {
   editor = null;
   home.hidden = name === '';
   if (name.startsWith(sceneStart)) return void showScene(name.slice(sceneStart.length));
-  if (name !== '') editor = new Editor(api, name);
+  if (name !== '') editor = new Editor(api, name, scenes);
   place.replaceChildren(...(editor ? [editor.root] : [new ProjectList(api).root, new SceneList(scenes).root]));
 }
 

@@ -5,26 +5,12 @@ import { fixed } from '../languages/numbers';
 import { text } from '../languages/text';
 import type { Built, Project, StudioApi } from './api';
 import type { Asks } from './editor';
+import { exerciseText } from './exercise_text';
 import { editButton } from './scene_editor/edit_button';
 import { forThePage } from './wording';
 
 const waitMs = 300;
 const patienceMs = 120_000;
-
-function exerciseText(file: string): string {
-  switch (file) {
-    case '1_sylvian_fissure.xml':
-      return text('Open the fissure');
-    case '2_aneurysm_dissection.xml':
-      return text('Free the aneurysm');
-    case '3_clipping.xml':
-      return text('Clip the neck');
-    case '4_rupture.xml':
-      return text('Stop a rupture');
-    default:
-      return file;
-  }
-}
 
 export class ResultPanel {
   readonly root: HTMLElement;

@@ -49,6 +49,7 @@ export class SurfaceView {
   private controls: OrbitControls | null = null;
   private mesh: Mesh<BufferGeometry, MeshStandardMaterial> | null = null;
   private readonly cut = new Group();
+  private readonly clip = new Group();
   private pressed = new Vector2();
   private waiting = false;
   private readonly watch = new ResizeObserver(() => this.resize());
@@ -59,7 +60,7 @@ export class SurfaceView {
     this.canvas.setAttribute('aria-label', text('The vessel with its openings and the plane of the neck'));
     this.scene.background = new Color('#14181c');
     this.camera.add(this.lamp);
-    this.scene.add(this.camera, new AmbientLight('#ffffff', 0.7), this.marks, this.cut);
+    this.scene.add(this.camera, new AmbientLight('#ffffff', 0.7), this.marks, this.cut, this.clip);
     this.canvas.addEventListener('pointerdown', (e) => this.pressed.set(e.clientX, e.clientY));
     this.canvas.addEventListener('pointerup', (e) => this.released(e));
     this.watch.observe(this.root);
@@ -160,6 +161,14 @@ export class SurfaceView {
     marks.push(...points.map((p) => ball(p, Math.hypot(...facts.sizeMm) / 120, colours.point)));
     this.marks.clear();
     this.marks.add(...marks);
+    this.draw();
+  }
+
+  /** Of clip_marks.ts; empty: none. */
+  showClip(marks: readonly Object3D[]): void {
+    if (marks.length === 0 && this.clip.children.length === 0) return;
+    this.clip.clear();
+    this.clip.add(...marks);
     this.draw();
   }
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What parameters of rules mean, in an author's language. Those that are not here have their own words, in English.
+import { text } from '../../languages/text';
+
+/** '': none. */
+export function parameterWords(element: string, parameter: string): string {
+  switch (`${element}.${parameter}`) {
+    case 'goal_clipped.max_grade':
+      return text('Worst remnant that is accepted (Sindou grade)');
+    case 'goal_clipped.min_flow':
+      return text('Least flow of a branch, as a share of that before');
+    case 'fault_stenosis.limit':
+      return text('A branch counts as narrowed below this share of its flow');
+    case 'goal_clipped.sealed':
+      return text('The sac counts as closed below this share of its section');
+    case 'goal_strands.fraction':
+      return text('Share of the strands to be divided');
+    case 'goal_opening.distance':
+      return text('How far the lips are to be parted');
+    case 'goal_bleeding_stopped.rate':
+    case 'goal_temporary_removed.rate':
+    case 'timer_rupture.rate':
+      return text('It counts as bleeding above');
+    case 'goal_two_hands.count':
+      return text('How often');
+    case 'fault_force.limit':
+      return text('Largest force');
+    case 'fault_order.allowed':
+      return text('Deep strands that may be cut too early');
+    case 'time_limit.limit':
+    case 'timer_rupture.limit':
+    case 'timer_temporary_clip.limit':
+      return text('Time limit');
+    case 'complication.probability':
+      return text('How likely it is, 0 to 1');
+    case 'complication.from':
+      return text('Not before');
+    case 'complication.to':
+      return text('Not after');
+  }
+  if (parameter === 'hold') return text('How long it must hold');
+  return parameter === 'grace' ? text('Shorter times are forgiven') : '';
+}
+
+/** What happens by chance. */
+export function complicationWords(command: string): string {
+  if (command.startsWith('bleeding rupture')) return text('The dome ruptures');
+  return command.startsWith('heart set_systolic') ? text('The blood pressure rises') : command;
+}

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The goals, faults, clocks and complications of a built case's exercises, and an author's changes of them
+// (tools/case_builder/rules.h).
+import { list, number, object, text } from '../../start/api';
+
+export interface Rule {
+  id: string;
+  element: string;
+  text: string;
+  /** As proposed: parameter to value. */
+  values: ReadonlyMap<string, string>;
+}
+
+export interface ExerciseRules {
+  exercise: number;
+  file: string;
+  rules: Rule[];
+}
+
+const valuesOf = (value: unknown): Map<string, string> =>
+  new Map(Object.entries(object(value)).map(([name, v]) => [name, text(v)]));
+
+export const exerciseRulesOf = (value: unknown): ExerciseRules[] =>
+  list(value).map((e) => ({
+    exercise: number(e.exercise),
+    file: text(e.file),
+    rules: list(e.rules).map((r) => ({
+      id: text(r.id),
+      element: text(r.element),
+      text: text(r.text),
+      values: valuesOf(r.values),
+    })),
+  }));
+
+/** parameter '': whether the rule is left out. */
+const nameOf = (exercise: number, rule: string, parameter: string): string =>
+  parameter === '' ? `${exercise}.${rule}=` : `${exercise}.${rule}.${parameter}=`;
+
+/** What was chosen in place of the proposal; null: nothing. */
+export function changeOf(changes: readonly string[], exercise: number, rule: string, parameter = ''): string | null {
+  const name = nameOf(exercise, rule, parameter);
+  return changes.find((c) => c.startsWith(name))?.slice(name.length) ?? null;
+}
+
+/** The changes with that one; null: as proposed. */
+export function withChange(
+  changes: readonly string[],
+  exercise: number,
+  rule: string,
+  parameter: string,
+  value: string | null,
+): string[] {
+  const name = nameOf(exercise, rule, parameter);
+  const others = changes.filter((c) => !c.startsWith(name));
+  return value === null ? others : [...others, name + value];
+}
