@@ -34,39 +34,6 @@ TEST_P(ShippedCase, AnAngledClipClosesTheNeckAndSparesTheBranches) {
   EXPECT_GT(o.channels["heart.superior.volume_share"], 0.95) << "a branch has not";
 }
 
-// Between the hemispheres: other lobes, another vessel, the same judgement.
-const std::filesystem::path pericallosal_scene = scenes / "cases/pericallosal/case.xml";
-
-TEST(Pericallosal, AClipAcrossTheNeckSparesBothBranches) {
-  test::ToldHints told;
-  test::Played o = test::play_motion(pericallosal_scene, "steady", -1, told.listener());
-  ASSERT_TRUE(o.ran);
-  told.expect_few();
-  EXPECT_TRUE(o.finite);
-  EXPECT_EQ(o.state, ExerciseState::done);
-  EXPECT_EQ(o.events["clip_released"], 1);
-  EXPECT_EQ(o.events["rupture"], 0);
-  for (const auto& [id, count] : o.faults) EXPECT_EQ(count, 0) << id;
-  EXPECT_EQ(o.measures["grade"], 0);
-  EXPECT_LT(o.measures["remnant_pct"], 10);
-  EXPECT_GT(o.measures["tip_past_neck"], 0.2);
-  for (const char* branch : {"pericallosal", "callosomarginal"}) {
-    EXPECT_GT(o.measures[branch + std::string(".flow_pct")], 90) << branch;
-    EXPECT_LT(o.measures[branch + std::string(".stenosis_pct")], 30) << branch;
-  }
-  test::expect_gentle(o);
-}
-
-TEST(Pericallosal, AClipTooHighLeavesARemnant) {
-  test::Played o = test::play_motion(pericallosal_scene, "too_high");
-  ASSERT_TRUE(o.ran);
-  EXPECT_TRUE(o.finite);
-  EXPECT_EQ(o.state, ExerciseState::running);
-  EXPECT_LT(o.goals["clip"], 0);
-  EXPECT_GE(o.measures["grade"], 2);
-  EXPECT_GT(o.measures["remnant_pct"], 50);
-}
-
 TEST(Clipping, AClipAcrossABranchIsAFault) {
   test::ToldHints told;
   test::Played o = test::play_motion(clipping_scene, "careless", -1, told.listener());

@@ -23,6 +23,8 @@ NODES = {
     "temporal.msh": (280, 380),
     "right_frontal.msh": (420, 560),
     "left_frontal.msh": (300, 420),
+    "pterional/frontal.msh": (300, 400),
+    "pterional/temporal.msh": (190, 280),
 }
 # The falx lies in the gap between the lobes.
 LEAST_GAP, LEAST_GAP_OF_FALX = 0.5, 0.1  # mm
@@ -168,7 +170,8 @@ def main():
             surfaces[name] = [p for p in points if all(math.isfinite(c) for c in p)]
     lobes = json.loads((folder / "approach.json").read_text())["lobes"]
     for lobe in lobes:
-        low, high = NODES[lobe + ".msh"]
+        name = lobe + ".msh"
+        low, high = NODES.get("%s/%s" % (folder.name, name)) or NODES[name]
         nodes = entries[lobe + ".msh"]["nodes"]
         check.that(low <= nodes <= high, "%s.msh: %d nodes" % (lobe, nodes))
         triangles = entries[lobe + "_surface.ply"]["triangles"]

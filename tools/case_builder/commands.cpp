@@ -171,7 +171,7 @@ void brain_options(CLI::App* app, Options& o) {
 }
 
 void place_options(CLI::App* app, Options& o) {
-  app->add_option("--approach", o.approach, "the way to the aneurysm: sylvian (default), interhemispheric");
+  app->add_option("--approach", o.approach, "the way to the aneurysm: sylvian (default), interhemispheric, pterional");
   app->add_flag("--in-place", o.in_place, "the input lies in the frame of the lobes (MNI, mm) already");
   app->add_option("--lobes", o.lobes, "folder with lobes of your own, named as in meshes/lobes, in its frame (MNI, mm)")
       ->check(CLI::ExistingDirectory);

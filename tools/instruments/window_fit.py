@@ -118,11 +118,12 @@ def main(argv=None):
         fissure = json.load(f)
     with open(os.path.join(args.lobes, "approach.json"), encoding="utf-8") as f:
         approach = json.load(f)
-    n = unit(tuple(fissure["outward_normal"]))
+    # A corridor that does not lead along the fissure's normal has a direction and a middle of its own.
+    n = unit(tuple(par["fit"].get("normal", fissure["outward_normal"])))
     up = unit(sub((0.0, 0.0, 1.0), combine((0.0, 0.0, 0.0), (n[2], n))))
     x_axis = cross(up, n)
     shift = par["fit"]["shift"]
-    centre = combine(tuple(fissure["centre"]), (shift[0], x_axis), (shift[1], up))
+    centre = combine(tuple(par["fit"].get("middle", fissure["centre"])), (shift[0], x_axis), (shift[1], up))
     brain = []
     for lobe in approach["lobes"]:
         for p in ply_vertices(os.path.join(args.lobes, f"{lobe}_surface.ply")):

@@ -1,0 +1,189 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes cases of the library from scenes/cases/library.json: make.py [--again] NAME ...
+
+Each becomes the folder scenes/cases/NAME: artery and lobes, artery.xml, field.xml, case.xml, a steady motion and one
+that fails. insula_artery makes the artery from its dimensions. insula_case places it and finds the clip's place by
+playing.
+--again writes texts and motions from what a former run has built. docs/case-library.md describes the table.
+"""
+import argparse
+import json
+import math
+import pathlib
+import shutil
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import texts  # noqa: E402
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CASES = ROOT / "scenes" / "cases"
+PROGRAMS = ROOT / "build" / "release" / "bin"
+AFTERWARDS = 4.5  # s after the hand has left the field
+HELD = 9  # row of a motion of the case builder: the shut clip is still held
+KEPT = ("artery", "lobes", "artery.xml", "field.xml")
+
+
+def read(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def artery_of(case):
+    """The dimensions: an object, or the name of an entry of arteries.json."""
+    spec = case["artery"]
+    if isinstance(spec, str):
+        spec = next(c for c in read(ROOT / "tools/artery/arteries.json")["cases"] if c["name"] == spec)
+    return {**spec, "name": case["name"], "about": case["about"]}
+
+
+def build(case, work):
+    """Runs both programs. What the case needs lies in its folder afterwards, all else in `work`."""
+    folder, artery = CASES / case["name"], artery_of(case)
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    card = folder / "case.jpg"
+    picture = card.read_bytes() if card.exists() else None
+    shutil.rmtree(folder, ignore_errors=True)
+    table = work / "table.json"
+    table.write_text(json.dumps({"about": "one case of the library", "cases": [artery]}), encoding="utf-8")
+    subprocess.run([PROGRAMS / "insula_artery", "make", table, work], check=True)
+    inlet = "%g %g %g mm" % tuple(artery["parent"]["points"][0])
+    words = [PROGRAMS / "insula_case", "new", case["name"], work / case["name"] / "wall.ply"]
+    words += ["--approach", case["approach"]]
+    words += ["--in-place", "--keep", "0 mm", "--inlet", inlet, "--site", case["site"], "--out", CASES]
+    for option, value in case.get("options", {}).items():
+        words += ["--" + option, value]
+    subprocess.run(words, check=True, cwd=ROOT)
+    for path in sorted(folder.iterdir()):
+        if path.name not in KEPT:
+            shutil.move(path, work / path.name)
+    if picture:
+        card.write_bytes(picture)
+    share_lobes(case, folder, work)
+    name_branches(case, artery, folder)
+    stiffen(case, folder)
+    set_variables(case, folder)
+
+
+def share_lobes(case, folder, work):
+    """Lobes that need not give way for the vessel are those of the approach."""
+    if any(room["moved_mm"] > 0 for room in read(work / "place.json")["rooms"]):
+        return
+    shutil.rmtree(folder / "lobes")
+    field = folder / "field.xml"
+    words = '\n    <variable name="lobes" value="../cases/%s/lobes"/>\n  </include>' % case["name"]
+    text = field.read_text(encoding="utf-8")
+    if words not in text:
+        raise SystemExit("field.xml does not name the case's lobes")
+    field.write_text(text.replace(">" + words, "/>"), encoding="utf-8")
+
+
+def name_branches(case, artery, folder):
+    """branch_1, branch_2 become what the case calls the superior and the inferior branch of the dimensions."""
+    vessel = read(folder / "artery/vessel.json")
+    names = {}
+    for line in vessel["centrelines"]:
+        if line["to"].startswith("outlet"):
+            end = line["points"][-1]
+            near = min(case["branches"], key=lambda b: math.dist(artery[b]["points"][-1], end))
+            names[line["name"]] = case["branches"][near]["name"]
+    if len(set(names.values())) != 2:
+        raise SystemExit("the branches cannot be told apart")
+    for path in (folder / "artery/vessel.json", folder / "artery.xml", folder / "field.xml"):
+        text = path.read_text(encoding="utf-8")
+        for old, new in names.items():
+            text = text.replace(old, new)
+        path.write_text(text, encoding="utf-8")
+
+
+def stiffen(case, folder):
+    """Regions whose wall is not as the case builder proposes, such as a calcified neck or a thin bleb."""
+    path = folder / "artery.xml"
+    text = path.read_text(encoding="utf-8")
+    for region, wall in case.get("walls", {}).items():
+        lines = [line for line in text.split("\n") if '<membrane ' in line and 'regions="%s"' % region in line]
+        if len(lines) != 1:
+            raise SystemExit("artery.xml has no membrane of the region %s alone" % region)
+        new = lines[0]
+        for name, value in wall.items():
+            begin = new.index(name + '="') + len(name) + 2
+            new = new[:begin] + value + new[new.index('"', begin):]
+        text = text.replace(lines[0], new)
+    path.write_text(text, encoding="utf-8")
+
+
+def set_variables(case, folder):
+    """Variables of parts, such as the force at which the bleb tears: {"bleb.xml": {"bleb_force": "0.1 N"}}."""
+    path = folder / "field.xml"
+    text = path.read_text(encoding="utf-8")
+    for part, variables in case.get("variables", {}).items():
+        head = '<include file="../../parts/%s">' % part
+        if head not in text:
+            raise SystemExit("field.xml does not include " + part)
+        lines = ['\n    <variable name="%s" value="%s"/>' % item for item in variables.items()]
+        text = text.replace(head, head + "".join(lines))
+    path.write_text(text, encoding="utf-8")
+
+
+def moved(rows, by, then=None, shut=False):
+    """A motion whose right hand is shifted by a vector, mm. `then`: that from HELD on. `shut`: blades never opened."""
+    out = []
+    for k, row in enumerate(rows):
+        words = row.split(",")
+        by = then if then and k == HELD else by
+        if words[1] == "right":
+            words[2:5] = ["%.6f" % (float(w) + b / 1000) for w, b in zip(words[2:5], by)]
+            words[9] = "0" if shut else words[9]
+        out.append(",".join(words))
+    return "\n".join(out) + "\n"
+
+
+def directions(vessel, approach):
+    """Unit vectors at the neck: towards the dome, and towards the surgeon along the neck's plane."""
+    unit = lambda v: [x / math.hypot(*v) for x in v]
+    dome, view = unit(vessel["neck"]["normal"]), unit(approach["to_surgeon"])
+    along = sum(a * b for a, b in zip(dome, view))
+    return dome, unit([v - along * d for v, d in zip(view, dome)])
+
+
+def write_motions(case, approach, folder, work):
+    rows = (work / "3_clipping_steady.csv").read_text(encoding="utf-8").split("\n")[:-1]
+    last, before = rows[-1].split(","), rows[-2].split(",")
+    rows[-1] = ",".join(["%g" % (float(before[0]) + AFTERWARDS)] + last[1:])
+    dome, out = directions(read(folder / "artery/vessel.json"), approach)
+    shift = lambda m: [m.get("raise_mm", 0) * d + m.get("back_mm", 0) * o for d, o in zip(dome, out)]
+    (folder / "case_steady.csv").write_text(moved(rows, shift(case.get("steady", {}))), encoding="utf-8")
+    failing = case["fails"]
+    then = shift(failing["then"]) if "then" in failing else None
+    bad = moved(rows, shift(failing), then, failing.get("shut", False))
+    (folder / ("case_%s.csv" % failing["motion"])).write_text(bad, encoding="utf-8")
+
+
+def approach_of(name):
+    for path in sorted((ROOT / "meshes").glob("*/approach.json")):
+        approach = read(path)
+        if approach["name"] == name:
+            return approach
+    raise SystemExit("there is no approach " + name)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--again", action="store_true", help="write texts and motions only")
+    parser.add_argument("names", nargs="+", metavar="NAME")
+    args = parser.parse_args()
+    table = {case["name"]: case for case in read(CASES / "library.json")["cases"]}
+    for name in args.names:
+        case, folder, work = table[name], CASES / name, ROOT / "build" / "case_library" / name
+        approach = approach_of(case["approach"])
+        if not args.again:
+            build(case, work)
+        write_motions(case, approach, folder, work)
+        texts.write(case, approach, folder, work)
+        print(name, json.dumps(read(work / "scenes.json").get("clipping")))
+
+
+if __name__ == "__main__":
+    main()
