@@ -198,9 +198,10 @@ TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
 
   // A clip is tried over the neck, one that lies on no tray. The case stays as it is.
   const fs::path tried = folder.path() / "clip.json";
-  ASSERT_EQ(command({"clip", made.path.string(), "--clip", "angled_30_10", "--turn", "15", "deg", "--out", tried.string()},
-                    &said),
-            0)
+  ASSERT_EQ(
+      command({"clip", made.path.string(), "--clip", "angled_30_10", "--turn", "15", "deg", "--out", tried.string()},
+              &said),
+      0)
       << said;
   const Json clip = read_json(tried);
   EXPECT_EQ(clip.at("clip"), "angled_30_10");
