@@ -61,7 +61,10 @@ TEST_P(LibraryCase, SteadyHandsCloseTheNeckFasterThanLife) {
   test::expect_gentle(o);
   Registry registry;
   register_builtin(registry);
-  EXPECT_LT(estimate(work.value(), measure_rates(registry), 2).step_ms, 1000 * work->h) << "slower than life";
+  // Other work on the machine only makes the measured rates slower.
+  double step_ms = 1e300;
+  for (int k = 0; k < 3; ++k) step_ms = std::min(step_ms, estimate(work.value(), measure_rates(registry), 2).step_ms);
+  EXPECT_LT(step_ms, 1000 * work->h) << "slower than life";
 }
 
 TEST_P(LibraryCase, TheOtherMotionFailsForTheDeclaredReason) {
