@@ -18,9 +18,9 @@ struct Placement {
   Vec3 apply(const Vec3& p) const { return rotation * p + shift; }
 };
 
-/// Placements near that of the approach, turned differently about the sac's axis; then others whose sac leans away from
-/// the line of sight. Of each lean that with the least overlap comes first. Each is found on a fixed grid of turns and
-/// shifts and then refined. One alone where the turn or the place is given.
+/// Placements near that of the approach, turned differently about the sac's axis, some with a sac that leans away from
+/// the line of sight. The first has the least overlap of those that do not lean, the next that of each lean, and so on.
+/// Each is found on a fixed grid of turns and shifts and then refined. One alone where the turn or the place is given.
 std::vector<Placement> find_placements(const artery::Vessel& vessel, const Fissure& fissure, const Options& options,
                                        Progress& progress);
 

@@ -188,7 +188,8 @@ std::vector<Placement> find_placements(const artery::Vessel& v, const Fissure& f
   progress.step("distances in the fissure");
   PlacementCost cost(v, fissure, o);
   progress.step("looking for the place");
-  std::vector<Placement> out;
+  // The best of each lean first, then the second of each.
+  std::vector<std::vector<Placement>> ranks(most_placements);
   for (const double lean : leans) {
     if (o.keep_spin && lean != 0) continue;
     cost.lean(v, lean);
@@ -196,12 +197,14 @@ std::vector<Placement> find_placements(const artery::Vessel& v, const Fissure& f
     for (BestTurn& t : starts) refine(cost, t);
     std::stable_sort(starts.begin(), starts.end(),
                      [](const BestTurn& a, const BestTurn& b) { return a.cost < b.cost; });
-    for (const BestTurn& t : starts) {
-      Placement& p = out.emplace_back();
-      p.rotation = cost.rotation(t.turn);
-      p.shift = fissure.approach.neck + t.turn.shift - p.rotation * v.neck->centre;
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+      Placement& p = ranks[k].emplace_back();
+      p.rotation = cost.rotation(starts[k].turn);
+      p.shift = fissure.approach.neck + starts[k].turn.shift - p.rotation * v.neck->centre;
     }
   }
+  std::vector<Placement> out;
+  for (const std::vector<Placement>& rank : ranks) out.insert(out.end(), rank.begin(), rank.end());
   return out;
 }
 
