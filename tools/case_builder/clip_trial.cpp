@@ -31,6 +31,7 @@ void replace_names(std::string& text, const std::string& what, const std::string
 /// Files beside those of the case that are gone afterwards.
 struct Beside {
   fs::path field, scene, motion;
+  fs::path clip = {};  ///< its folder, if the case did not have it
   explicit Beside(const fs::path& folder)
       : field(folder / "clip_trial_field.xml"), scene(folder / "clip_trial.xml"), motion(folder / "clip_trial.csv") {}
   Beside(const Beside&) = delete;
@@ -38,6 +39,7 @@ struct Beside {
   ~Beside() {
     std::error_code ignored;
     for (const fs::path& file : {field, scene, motion}) fs::remove(file, ignored);
+    if (!clip.empty()) fs::remove_all(clip, ignored);
   }
 };
 
@@ -57,9 +59,11 @@ void write_beside(const CaseFolder& folder, const Beside& to, const std::string&
 }
 
 /// A case outside of the project has copies of its clips.
-void bring_clip(const CaseFolder& folder, const fs::path& project, const std::string& clip) {
+void bring_clip(const CaseFolder& folder, const fs::path& project, const std::string& clip, Beside& beside) {
   const fs::path own = folder.path / "meshes/clips";
-  if (fs::is_directory(own) && !fs::exists(own / clip)) fs::copy(project / "meshes/clips" / clip, own / clip);
+  if (!fs::is_directory(own) || fs::exists(own / clip)) return;
+  beside.clip = own / clip;
+  fs::copy(project / "meshes/clips" / clip, own / clip, fs::copy_options::recursive);
 }
 
 /// From the fissure back to the author's file.
@@ -116,8 +120,8 @@ Json try_clip(const CaseFolder& folder, const fs::path& project, const Options& 
   const Approach approach = read_approach(project, o.approach);
   const Solid floor(read_ply(folder.lobes() / (approach.floor + "_surface.ply")));
   const ClipPlan plan = clip_plans(v, floor, read_clips(project), o, approach).front();
-  bring_clip(folder, project, plan.clip.name);
-  const Beside beside(folder.path);
+  Beside beside(folder.path);
+  bring_clip(folder, project, plan.clip.name, beside);
   write_beside(folder, beside, plan.clip.name);
   progress.step("closing the clip");
   const RehearsedClip tried = rehearse_clipping(beside.scene, beside.motion, v, {plan}, false, 1, progress);
