@@ -109,6 +109,7 @@ try {
 
   // The clipping trial takes minutes.
   await page.getByLabel('Play the exercises until scripted hands succeed').uncheck();
+  await waitFor('choice', async () => !(await project(page, 'narrow_neck')).choices.rehearse);
   const chosen = (await project(page, 'narrow_neck')).choices;
   await page.getByRole('button', { name: 'Build', exact: true }).click();
   await page.locator('.stages .now').waitFor(patience);
@@ -201,7 +202,7 @@ try {
   assert.deepEqual(await axeFinds(page), []);
   await shot(page, 'clip');
   await picture(page, 'clip', step(page, '7. Try a clip'));
-  await page.getByRole('button', { name: 'As proposed' }).click();
+  await page.getByRole('button', { name: 'As proposed', exact: true }).click();
   await page.getByText('Tried with other choices: close the clip again.').waitFor(patience);
   await page.getByRole('button', { name: 'Undo' }).click();
   await clipped();
