@@ -178,8 +178,9 @@ double ClippingOutcome::least_flow() const {
   return least;
 }
 
+// A branch that is shut is worse than a neck that is left open.
 double ClippingOutcome::cost() const {
-  return (goal ? 0 : 3) + grade + 5 * remnant + 8 * std::max(0.0, 0.9 - least_flow()) +
+  return (goal ? 0 : 3) + grade + 5 * remnant + 14 * std::max(0.0, 0.9 - least_flow()) +
          2 * std::max(0.0, stenosis - 0.3) + std::min(faults, 6) + (ruptured ? 10 : 0) +
          0.4 * std::max(0.0, -tip_past_neck) + 0.5 * slit;
 }
