@@ -130,13 +130,7 @@ Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const App
   return whole;
 }
 
-Placement brain_motion(const CaseFolder& folder) {
-  Placement p;
-  const Json json = read_json(folder.path / "brain.json");
-  for (int k = 0; k < 9; ++k) p.rotation(k / 3, k % 3) = json.at("rotation").at(std::size_t(k)).get<double>();
-  p.shift = vec3_from(json.at("shift_mm"));
-  return p;
-}
+Placement brain_motion(const CaseFolder& folder) { return placement_from(read_json(folder.path / "brain.json")); }
 
 namespace {
 
@@ -183,9 +177,7 @@ Json mesh_brain(BrainLabels& given, const CaseFolder& folder, const Approach& ap
   mesh_tool::PartFields fields = build_part_fields(given.volume, nullptr, given.parts, f);
   Placement motion;
   if (!o.brain_in_place && given.own_fissure) motion = settle_in(given, fields, approach, notes);
-  json["rotation"] = Json::array();
-  for (int k = 0; k < 9; ++k) json["rotation"].push_back(rounded(motion.rotation(k / 3, k % 3)));
-  json["shift_mm"] = to_json(motion.shift);
+  write_placement(motion, json);
   progress.step("surfaces");
   const std::vector<mesh_tool::TriangleMesh> surfaces = surfaces_of(fields, approach);
   progress.step("tetrahedra");

@@ -111,13 +111,10 @@ class ClipView {
  public:
   ClipView(const ClipShape& clip, const ApplierPose& pose)
       : clip_(clip),
-        pose_(pose),
-        y_(pose.shaft.cross(pose.flat)),
+        tip_(pose.tip),
+        to_clip_(pose.rotation().transpose()),
         root_(clip.middle - 0.5 * clip.blade * clip.inward) {}
-  Vec3 local(const Vec3& p) const {
-    const Vec3 d = p - pose_.tip;
-    return clip_.grip + Vec3(d.dot(pose_.flat), d.dot(y_), d.dot(pose_.shaft));
-  }
+  Vec3 local(const Vec3& p) const { return clip_.grip + to_clip_ * (p - tip_); }
   /// Calls with points of the clamping line from `behind` mm behind the root to the tip.
   template <class Call>
   void along_blade(double behind, const Call& call) const {
@@ -126,8 +123,9 @@ class ClipView {
 
  private:
   const ClipShape& clip_;
-  const ApplierPose& pose_;
-  Vec3 y_, root_;
+  Vec3 tip_;
+  Mat3 to_clip_;
+  Vec3 root_;
 };
 
 }  // namespace

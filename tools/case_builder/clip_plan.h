@@ -27,6 +27,12 @@ std::vector<ClipShape> read_clips(const fs::path& project);
 /// A pose of the applier that holds a clip.
 struct ApplierPose {
   Vec3 tip, flat, shaft;  ///< flat: direction in which the blades close (+x); unit
+  /// From the frame of a clip that it holds: +x closes, +z to the hinge.
+  Mat3 rotation() const {
+    Mat3 m;
+    m << flat, shaft.cross(flat), shaft;
+    return m;
+  }
 };
 ApplierPose applier_pose(const ClipShape& clip, const Vec3& middle, const Vec3& inward, const Vec3& closing);
 

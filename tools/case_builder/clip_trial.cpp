@@ -4,9 +4,11 @@
 #include <cctype>
 
 #include "core/base/input_error.h"
+#include "core/base/removed_at_end.h"
 #include "core/model/formats/file_bytes.h"
 #include "tools/case_builder/approach.h"
 #include "tools/case_builder/clipping_rehearsal.h"
+#include "tools/case_builder/place.h"
 #include "tools/case_builder/scenes.h"
 #include "tools/case_builder/wall.h"
 
@@ -30,17 +32,9 @@ void replace_names(std::string& text, const std::string& what, const std::string
 
 /// Files beside those of the case that are gone afterwards.
 struct Beside {
-  fs::path field, scene, motion;
-  fs::path clip = {};  ///< its folder, if the case did not have it
+  RemovedAtEnd field, scene, motion;
   explicit Beside(const fs::path& folder)
       : field(folder / "clip_trial_field.xml"), scene(folder / "clip_trial.xml"), motion(folder / "clip_trial.csv") {}
-  Beside(const Beside&) = delete;
-  Beside& operator=(const Beside&) = delete;
-  ~Beside() {
-    std::error_code ignored;
-    for (const fs::path& file : {field, scene, motion}) fs::remove(file, ignored);
-    if (!clip.empty()) fs::remove_all(clip, ignored);
-  }
 };
 
 std::string replaced(std::string text, const std::string& what, const std::string& by, const fs::path& file) {
@@ -52,52 +46,47 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 void write_beside(const CaseFolder& folder, const Beside& to, const std::string& clip) {
   const fs::path scene = exercise_file(folder, 3);
   std::string text = read_file_bytes(scene);
-  text = replaced(text, "\"field.xml\"", "\"" + to.field.filename().string() + "\"", scene);
-  text = replaced(text, "\"3_clipping_steady.csv\"", "\"" + to.motion.filename().string() + "\"", scene);
-  write_text(to.scene, text);
-  write_text(to.field, with_clip(read_file_bytes(folder.path / "field.xml"), clip));
+  text = replaced(text, "\"field.xml\"", "\"" + to.field.path().filename().string() + "\"", scene);
+  text = replaced(text, "\"3_clipping_steady.csv\"", "\"" + to.motion.path().filename().string() + "\"", scene);
+  write_text(to.scene.path(), text);
+  write_text(to.field.path(), with_clip(read_file_bytes(folder.path / "field.xml"), clip));
 }
 
-/// A case outside of the project has copies of its clips.
-void bring_clip(const CaseFolder& folder, const fs::path& project, const std::string& clip, Beside& beside) {
+/// A case outside of the project has copies of its clips. The folder of one that it did not have.
+RemovedAtEnd brought_clip(const CaseFolder& folder, const fs::path& project, const std::string& clip) {
   const fs::path own = folder.path / "meshes/clips";
-  if (!fs::is_directory(own) || fs::exists(own / clip)) return;
-  beside.clip = own / clip;
-  fs::copy(project / "meshes/clips" / clip, own / clip, fs::copy_options::recursive);
+  if (!fs::is_directory(own) || fs::exists(own / clip)) return RemovedAtEnd();
+  RemovedAtEnd copy(own / clip);
+  fs::copy(project / "meshes/clips" / clip, copy.path(), fs::copy_options::recursive);
+  return copy;
 }
 
 /// From the fissure back to the author's file.
 class WayBack {
  public:
-  WayBack(const CaseFolder& folder, bool mirrored) : mirrored_(mirrored) {
-    const Json place = read_json(folder.path / "place.json");
-    for (int k = 0; k < 9; ++k) rotation_(k / 3, k % 3) = place.at("rotation").at(std::size_t(k));
-    shift_ = vec3_from(place.at("shift_mm"));
-  }
+  WayBack(const CaseFolder& folder, bool mirrored)
+      : placement_(placement_from(read_json(folder.path / "place.json"))), mirrored_(mirrored) {}
   Json operator()(const Vec3& p) const {
-    Vec3 out = rotation_.transpose() * (p - shift_);
+    Vec3 out = placement_.rotation.transpose() * (p - placement_.shift);
     if (mirrored_) out.x() = -out.x();
     return to_json(out);
   }
 
  private:
-  Mat3 rotation_;
-  Vec3 shift_;
+  Placement placement_;
   bool mirrored_;
 };
 
 Json blades_of(const ClipPlan& plan, const WayBack& back) {
-  // The clip's frame has its grip at the applier's tip; +x closes.
-  const Vec3& x = plan.pose.flat;
-  const Vec3& z = plan.pose.shaft;
-  const Vec3 y = z.cross(x);
-  const auto turned = [&](const Vec3& v) -> Vec3 { return v.x() * x + v.y() * y + v.z() * z; };
-  const Vec3 middle = plan.pose.tip + turned(plan.clip.middle - plan.clip.grip),
-             half = turned(plan.clip.inward) * 0.5 * plan.clip.blade;
+  // The clip's frame has its grip at the applier's tip.
+  const Mat3 turn = plan.pose.rotation();
+  const Vec3 middle = plan.pose.tip + turn * (plan.clip.middle - plan.clip.grip),
+             half = 0.5 * plan.clip.blade * (turn * plan.clip.inward);
   Json out = Json::array();
   for (const double side : {-blades_apart, blades_apart})
-    out.push_back({back(middle - half + side * x), back(middle + half + side * x)});
-  return {{"blades", out}, {"grip", back(plan.pose.tip)}, {"shaft", back(plan.pose.tip + shaft_shown * z)}};
+    out.push_back({back(middle - half + side * plan.pose.flat), back(middle + half + side * plan.pose.flat)});
+  return {
+      {"blades", out}, {"grip", back(plan.pose.tip)}, {"shaft", back(plan.pose.tip + shaft_shown * plan.pose.shaft)}};
 }
 
 }  // namespace
@@ -120,11 +109,12 @@ Json try_clip(const CaseFolder& folder, const fs::path& project, const Options& 
   const Approach approach = read_approach(project, o.approach);
   const Solid floor(read_ply(folder.lobes() / (approach.floor + "_surface.ply")));
   const ClipPlan plan = clip_plans(v, floor, read_clips(project), o, approach).front();
-  Beside beside(folder.path);
-  bring_clip(folder, project, plan.clip.name, beside);
+  const Beside beside(folder.path);
+  const RemovedAtEnd clip = brought_clip(folder, project, plan.clip.name);
   write_beside(folder, beside, plan.clip.name);
   progress.step("closing the clip");
-  const RehearsedClip tried = rehearse_clipping(beside.scene, beside.motion, v, {plan}, false, 1, progress);
+  const RehearsedClip tried =
+      rehearse_clipping(beside.scene.path(), beside.motion.path(), v, {plan}, false, 1, progress);
   progress.step("writing");
   Json out = to_json(tried.outcome);
   out.update({{"clip", tried.plan.clip.name},

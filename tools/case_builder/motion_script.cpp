@@ -17,9 +17,7 @@ ApplierPose drawn_back(ApplierPose pose, double mm) {
 void MotionScript::key(bool right, double seconds, const ApplierPose& pose, bool button1, bool button2) {
   double& t = time_[right];
   t = std::round((t + seconds) * 1e4) / 1e4;
-  Mat3 m;
-  m << pose.flat, pose.shaft.cross(pose.flat), pose.shaft;
-  const Eigen::Quaterniond q(m);
+  const Eigen::Quaterniond q(pose.rotation());
   const double sign = q.w() < 0 ? -1 : 1;
   rows_.push_back(
       {t, fmt::format("{:g},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}", t, right ? "right" : "left",

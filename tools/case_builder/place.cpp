@@ -58,6 +58,19 @@ Fitted fitted(const artery::Vessel& v, const Fissure& fissure, const Placement& 
 
 }  // namespace
 
+void write_placement(const Placement& p, Json& json) {
+  json["rotation"] = Json::array();
+  for (int k = 0; k < 9; ++k) json["rotation"].push_back(rounded(p.rotation(k / 3, k % 3)));
+  json["shift_mm"] = to_json(p.shift);
+}
+
+Placement placement_from(const Json& json) {
+  Placement p;
+  for (int k = 0; k < 9; ++k) p.rotation(k / 3, k % 3) = json.at("rotation").at(std::size_t(k)).get<double>();
+  p.shift = vec3_from(json.at("shift_mm"));
+  return p;
+}
+
 void run_place(const CaseFolder& folder, const fs::path& project, const Options& o, Progress& progress) {
   progress.stage("place", 5);
   progress.step("reading the fissure");
@@ -84,10 +97,7 @@ void run_place(const CaseFolder& folder, const fs::path& project, const Options&
   write_ply(folder.lobes() / (approach.floor + "_surface.ply"), best.fissure.floor,
             "unit mm; the floor of the fissure");
   Json json;
-  json["rotation"] = Json::array();
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) json["rotation"].push_back(rounded(best.placement.rotation(r, c)));
-  json["shift_mm"] = to_json(best.placement.shift);
+  write_placement(best.placement, json);
   json["rooms"] = Json::array();
   for (const Room& r : best.rooms)
     json["rooms"].push_back({{"what", r.what},

@@ -17,6 +17,9 @@ struct Placement {
   Vec3 shift = Vec3::Zero();
   Vec3 apply(const Vec3& p) const { return rotation * p + shift; }
 };
+/// As "rotation" (by rows) and "shift_mm".
+void write_placement(const Placement& placement, Json& json);
+Placement placement_from(const Json& json);
 
 /// Placements near that of the approach, turned differently about the sac's axis, some with a sac that leans away from
 /// the line of sight. The first has the least overlap of those that do not lean, the next that of each lean, and so on.

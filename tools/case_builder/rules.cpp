@@ -8,6 +8,7 @@
 #include "core/registry/registry.h"
 #include "core/scene/expand.h"
 #include "core/xml/document.h"
+#include "engine/reports/svg_plot.h"
 
 namespace insula::case_builder {
 namespace {
@@ -33,18 +34,6 @@ Tag tag_of(const std::string& text, const std::string& id) {
   const std::size_t at = text.find(" id=\"" + id + "\"");
   if (at == std::string::npos) return {};
   return {text.rfind('<', at), text.find('>', at) + 1};
-}
-
-std::string escaped(const std::string& value) {
-  std::string out;
-  for (const char c : value) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
-  }
-  return out;
 }
 
 void replace_all(std::string& text, const std::string& what, const std::string& by) {
