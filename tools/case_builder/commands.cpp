@@ -17,6 +17,7 @@
 #include "tools/case_builder/paint.h"
 #include "tools/case_builder/place.h"
 #include "tools/case_builder/project.h"
+#include "tools/case_builder/region_walls.h"
 #include "tools/case_builder/report.h"
 #include "tools/case_builder/rules.h"
 #include "tools/case_builder/scenes.h"
@@ -104,6 +105,19 @@ void file_unit(CLI::App* app, const std::string& name, std::optional<double>& mm
   app->add_option_function<std::string>(name, set, text)->type_name("UNIT")->check(check);
 }
 
+/// What CLI11 asks of a value: why it is refused, or nothing.
+template <class Value>
+std::function<std::string(const std::string&)> refusal_of(Value (*read)(const std::string&)) {
+  return [read](const std::string& given) {
+    try {
+      read(given);
+      return std::string();
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+  };
+}
+
 void intake_options(CLI::App* app, Options& o) {
   file_unit(app, "--unit", o.unit_mm,
             "unit of a surface file: m, cm, mm, um, inch or a length such as \"0.35 mm\" (default: mm; glTF: m)");
@@ -151,6 +165,14 @@ void wall_options(CLI::App* app, Options& o) {
   quantity<Length>(
       app, "--bleb", [&o](double mm) { o.bleb = mm; },
       {.bare = "mm", .min = "0 mm", .max = "4 mm", .doc = "radius of the weak spot at the dome; 0 mm: none"});
+  app->add_option_function<std::vector<std::string>>(
+         "--wall", [&o](const std::vector<std::string>& v) { o.walls = v; },
+         "thickness or stiffness of a region: REGION.PARAMETER=VALUE, such as \"neck.young=7 MPa\" or "
+         "\"vessels.thickness=0.4 mm\"; may be given again")
+      ->take_all()
+      ->check(refusal_of<WallChange>(read_wall_change));
+  app->add_flag_callback(
+      "--walls-as-proposed", [&o] { o.walls.clear(); }, "take back what --wall has changed");
 }
 
 void brain_options(CLI::App* app, Options& o) {
@@ -171,7 +193,8 @@ void brain_options(CLI::App* app, Options& o) {
 }
 
 void place_options(CLI::App* app, Options& o) {
-  app->add_option("--approach", o.approach, "the way to the aneurysm: sylvian (default), interhemispheric, pterional");
+  app->add_option("--approach", o.approach,
+                  "the way to the aneurysm, a name of meshes/*/approach.json (default: sylvian)");
   app->add_flag("--in-place", o.in_place, "the input lies in the frame of the lobes (MNI, mm) already");
   app->add_option("--lobes", o.lobes, "folder with lobes of your own, named as in meshes/lobes, in its frame (MNI, mm)")
       ->check(CLI::ExistingDirectory);
@@ -196,20 +219,12 @@ void scene_options(CLI::App* app, Options& o) {
                    {.bare = "mm", .min = "-10 mm", .max = "10 mm", .doc = "of the blades over the neck's plane"});
   quantity<Length>(app, "--slide", [&o](double mm) { o.slide = mm; },
                    {.bare = "mm", .min = "-15 mm", .max = "15 mm", .doc = "of the blades' middle beyond the neck's"});
-  const auto is_change = [](const std::string& given) {
-    try {
-      read_rule_change(given);
-      return std::string();
-    } catch (const InputError& e) {
-      return std::string(e.what());
-    }
-  };
   app->add_option_function<std::vector<std::string>>(
          "--rule", [&o](const std::vector<std::string>& v) { o.rules = v; },
          "a goal, fault, clock or complication of an exercise: EXERCISE.ID.PARAMETER=VALUE, such as "
          "3.clip.max_grade=1, or EXERCISE.ID=off; may be given again (rules.json has all of them)")
       ->take_all()
-      ->check(is_change);
+      ->check(refusal_of<RuleChange>(read_rule_change));
   app->add_flag_callback(
       "--rules-as-proposed", [&o] { o.rules.clear(); }, "take back what --rule has changed");
   app->add_option("--plays", o.plays,

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "tools/artery/surface.h"
+#include "tools/case_builder/region_walls.h"
 
 namespace insula::case_builder {
 namespace {
@@ -120,11 +121,10 @@ FindingSection wall_findings(const artery::Vessel& v, const Json& wall) {
                        "Hardly a sac: look whether the neck is in its place.");
   if (v.dome_height / neck < broad_neck) dome.advice += " A broad neck: expect that one clip leaves a part of it.";
   s.findings.push_back(dome);
-  for (const Json& w : wall.at("walls"))
-    s.findings.push_back(fact(
-        "wall of " + w.at("regions").get<std::string>(),
-        fmt::format("{:g} mm thick, {:g} MPa", w.at("thickness_mm").get<double>(), w.at("young_MPa").get<double>()),
-        "A proposal; change it in artery.xml."));
+  for (const WallOf& w : walls_from(wall.at("walls")))
+    s.findings.push_back(fact("wall of " + w.regions,
+                              fmt::format("{:g} mm thick, {:g} MPa", w.thickness_mm, w.young_mpa),
+                              "Change it: insula case wall FOLDER --wall \"neck.young=7 MPa\" --on"));
   add_notes(s, notes_from_json(wall.at("notes")));
   return s;
 }

@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/model/formats/file_bytes.h"
 #include "tools/artery/import_parts.h"
+#include "tools/case_builder/blind_ends.h"
 #include "tools/case_builder/grid_surface.h"
 #include "tools/case_builder/mirror.h"
 #include "tools/case_builder/openings.h"
@@ -180,13 +181,15 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
               what, o, notes);
   make_cuts(s, o);
   out.facts["openings_found_by"] = add_flat_ends(s);
+  mend_shape(s, what, o, notes);
+  if (const std::size_t before = s.caps.size(); cut_blind_ends(s, notes), before == 0 && !s.caps.empty())
+    out.facts["openings_found_by"] = "ends of one calibre of a closed surface";
   if (s.caps.size() < 2 && needed == Openings::two)
     throw InputError(
-        fmt::format("{}: has {} opening{}; a vessel needs an inlet and an outlet. Ends must be open, or cut straight "
-                    "and closed flat; where they are rounded, cut them with --cut \"X Y Z mm NX NY NZ\" "
+        fmt::format("{}: has {} opening{}; a vessel needs an inlet and an outlet. A closed end is found where the "
+                    "vessel keeps its calibre for a stretch; cut shorter ones with --cut \"X Y Z mm NX NY NZ\" "
                     "(a point in the vessel and the direction of what is to go), once an end",
                     what, s.caps.size(), ending(int(s.caps.size()))));
-  mend_shape(s, what, o, notes);
   const bool of_volume = o.label || o.threshold;
   const bool open = !s.caps.empty();
   if (open && !o.any_size && !o.unit_mm && !of_volume) scale_by_calibre(s, notes);

@@ -54,6 +54,7 @@ Json to_json(const Options& o) {
   j["keep"] = o.keep;
   j["vertices"] = o.vertices;
   j["bleb"] = o.bleb;
+  if (!o.walls.empty()) j["walls"] = o.walls;
   if (!o.brain.empty()) {
     j["brain"] = o.brain;
     j["lobe_labels"] = o.lobe_labels;
@@ -100,6 +101,7 @@ Options options_from_json(const Json& j) {
     take(j, "keep", o.keep);
     take(j, "vertices", o.vertices);
     take(j, "bleb", o.bleb);
+    take(j, "walls", o.walls);
     take(j, "brain", o.brain);
     take(j, "lobe_labels", o.lobe_labels);
     take(j, "brain_unit_mm", o.brain_unit_mm);

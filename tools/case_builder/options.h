@@ -41,9 +41,10 @@ struct Options {
   std::optional<Plane> neck;                         ///< in place of the proposed one; the normal points to the dome
   std::optional<std::array<double, 6>> neck_points;  ///< two points on opposite sides of the neck
   std::optional<Point> inlet;                        ///< the opening nearest to it; by default the widest
-  double keep = 13;     ///< vessels are cut off so far along their centrelines from the neck; 0: nowhere
-  int vertices = 1650;  ///< of the wall, about
-  double bleb = 1;      ///< radius of the weak spot at the dome; 0: none
+  double keep = 13;                ///< vessels are cut off so far along their centrelines from the neck; 0: nowhere
+  int vertices = 1650;             ///< of the wall, about
+  double bleb = 1;                 ///< radius of the weak spot at the dome; 0: none
+  std::vector<std::string> walls;  ///< changes of a region's thickness and modulus (region_walls.h)
   // brain
   std::vector<std::string>
       brain;  ///< a volume of labels; NAME=FILE for each lobe; or one closed surface. Empty: the shipped lobes

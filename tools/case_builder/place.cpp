@@ -24,19 +24,41 @@ void write_lobe(const fs::path& folder, const Lobe& lobe) {
   write_ply(folder / (lobe.name + "_surface.ply"), lobe.surface, "unit mm; a lobe parted for a vessel");
 }
 
-constexpr double easy = 2.5;  // of a plan's cost, below which no other place is looked for
+constexpr double easy = 2.5;  // of a plan's cost, below which a place is taken as the search ranks it
 
-/// A placement with the lobes parted for it, and the clip that then seems to fit best.
+/// A placement, and the clip that seems to fit best there. Parting the lobes is the long work, so it comes later.
+struct Candidate {
+  Placement placement;
+  artery::Vessel vessel;
+  ClipPlan plan;
+  bool promises() const { return !plan.leaves_remnant() && !plan.meets_dome() && plan.cost < easy; }
+};
+
+/// Those that promise an easy clip in the order of the search, then the others by what their clip costs.
+std::vector<Candidate> candidates(const artery::Vessel& v, const std::vector<Placement>& placements,
+                                  const Fissure& fissure, const std::vector<ClipShape>& clips, const Options& o) {
+  std::vector<Candidate> out;
+  const Solid floor(fissure.floor);
+  for (const Placement& p : placements) {
+    artery::Vessel there = placed(v, p);
+    ClipPlan plan = clip_plans(there, floor, clips, o, fissure.approach).front();
+    out.push_back({p, std::move(there), std::move(plan)});
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
+    if (a.promises() || b.promises()) return a.promises() && !b.promises();
+    return a.plan.cost < b.plan.cost;
+  });
+  return out;
+}
+
+/// A placement with the lobes parted for it.
 struct Fitted {
   Placement placement;
   artery::Vessel vessel;
   Fissure fissure;
   std::vector<Room> rooms;
   std::vector<Note> notes;
-  ClipPlan plan;
-  bool settles() const {
-    return is_sound(rooms) && is_clear(rooms) && !plan.leaves_remnant() && !plan.meets_dome() && plan.cost < easy;
-  }
+  bool settles() const { return is_sound(rooms) && is_clear(rooms); }
   double least_room() const {
     return std::min_element(rooms.begin(), rooms.end(), [](const Room& a, const Room& b) { return a.after < b.after; })
         ->after;
@@ -44,15 +66,13 @@ struct Fitted {
   bool better_than(const Fitted& other) const {
     if (is_sound(rooms) != is_sound(other.rooms)) return is_sound(rooms);
     if (is_clear(rooms) != is_clear(other.rooms)) return is_clear(rooms);
-    return is_clear(rooms) ? plan.cost < other.plan.cost : least_room() > other.least_room();
+    return least_room() > other.least_room();
   }
 };
 
-Fitted fitted(const artery::Vessel& v, const Fissure& fissure, const Placement& p, const std::vector<ClipShape>& clips,
-              const Options& o, Progress& progress) {
-  Fitted out{p, placed(v, p), fissure, {}, {}, {}};
+Fitted fitted(const Candidate& c, const Fissure& fissure, const Options& o, Progress& progress) {
+  Fitted out{c.placement, c.vessel, fissure, {}, {}};
   out.rooms = part_lobes(out.fissure, out.vessel.wall.mesh, o.gap, out.notes, progress);
-  out.plan = clip_plans(out.vessel, Solid(out.fissure.floor), clips, o, fissure.approach).front();
   return out;
 }
 
@@ -81,10 +101,10 @@ void run_place(const CaseFolder& folder, const fs::path& project, const Options&
   const std::vector<Placement> all = o.in_place && !o.brain.empty() ? std::vector<Placement>{brain_motion(folder)}
                                                                     : find_placements(v, fissure, o, progress);
   progress.step("parting the lobes");
-  const std::vector<ClipShape> clips = read_clips(project);
-  Fitted best = fitted(v, fissure, all.front(), clips, o, progress);
-  for (std::size_t k = 1; k < all.size() && !best.settles(); ++k)
-    if (Fitted next = fitted(v, fissure, all[k], clips, o, progress); next.better_than(best)) best = std::move(next);
+  const std::vector<Candidate> ranked = candidates(v, all, fissure, read_clips(project), o);
+  Fitted best = fitted(ranked.front(), fissure, o, progress);
+  for (std::size_t k = 1; k < ranked.size() && !best.settles(); ++k)
+    if (Fitted next = fitted(ranked[k], fissure, o, progress); next.better_than(best)) best = std::move(next);
   if (!is_sound(best.rooms))
     throw InputError(fmt::format(
         "the vessel has no place in this fissure: its dome is {:.1f} mm high, and the lobes would have to be "

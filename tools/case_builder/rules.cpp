@@ -5,22 +5,13 @@
 
 #include "core/base/input_error.h"
 #include "core/model/formats/file_bytes.h"
-#include "core/registry/registry.h"
 #include "core/scene/expand.h"
 #include "core/xml/document.h"
 #include "engine/reports/svg_plot.h"
+#include "tools/case_builder/declarations.h"
 
 namespace insula::case_builder {
 namespace {
-
-const Registry& registry() {
-  static const Registry all = [] {
-    Registry r;
-    register_builtin(r);
-    return r;
-  }();
-  return all;
-}
 
 [[noreturn]] void refuse(const RuleChange& c, const std::string& why) {
   throw InputError("--rule " + c.text() + ": " + why);
@@ -79,7 +70,7 @@ bool is_rule(const ComponentInfo* info) {
 
 /// Throws unless the element declares the parameter and allows the value.
 void check(const RuleChange& c, const std::string& element) {
-  const ComponentInfo* info = registry().find(element);
+  const ComponentInfo* info = builtin_registry().find(element);
   if (!is_rule(info)) refuse(c, "<" + element + "> is no goal, fault, clock or complication");
   if (c.off) return;
   const auto rule = info->create();
@@ -117,7 +108,7 @@ void gather(const Element& parent, Json& out) {
   for (const auto& e : parent.children) {
     gather(*e, out);
     const Attribute* id = e->find("id");
-    if (!id || !is_rule(registry().find(e->name))) continue;
+    if (!id || !is_rule(builtin_registry().find(e->name))) continue;
     Json values = Json::object();
     for (const Attribute& a : e->attributes)
       if (a.name != "id") values[a.name] = a.value;

@@ -264,7 +264,7 @@ TEST_F(Scan, StrokesArePaintedAndErased) {
   }
 }
 
-TEST_F(Scan, AVesselWithoutOpeningsIsShownSoThatItCanBeCut) {
+TEST_F(Scan, RoundEndsAreCutAndCanBeCutFartherIn) {
   // It ends round before the border.
   folder.write("round.nii", test::nifti_text({64, 24, 32}, 0.3, [](int i, int j, int k) {
                  return i > 6 && i < 56 ? test::tube_label(i - 5, j, k) : 0;
@@ -272,11 +272,26 @@ TEST_F(Scan, AVesselWithoutOpeningsIsShownSoThatItCanBeCut) {
   Options o;
   o.label = 1, o.smoothing = 3;
   const Inspection found = inspect(folder.path() / "round.nii", o, quiet);
+  EXPECT_EQ(found.facts["openings"].size(), 2u) << found.facts["openings"];
+  EXPECT_EQ(found.facts["problem"], "");
+  o.cuts = {{6, 3.6, 2.4, -1, 0, 0}, {12, 3.6, 2.4, 1, 0, 0}};
+  const Json openings = inspect(folder.path() / "round.nii", o, quiet).facts["openings"];
+  ASSERT_EQ(openings.size(), 2u);
+  const double a = openings[0]["centre"][0], b = openings[1]["centre"][0];
+  EXPECT_NEAR(std::min(a, b), 6, 0.05);
+  EXPECT_NEAR(std::max(a, b), 12, 0.05);
+}
+
+TEST_F(Scan, AVesselWithoutOpeningsIsShownSoThatItCanBeCut) {
+  folder.write("ball.nii", test::nifti_text({40, 40, 40}, 0.3, [](int i, int j, int k) {
+                 return std::hypot(i - 20, j - 20, k - 20) < 12 ? 1 : 0;
+               }));
+  Options o;
+  o.label = 1;
+  const Inspection found = inspect(folder.path() / "ball.nii", o, quiet);
   EXPECT_TRUE(found.facts["openings"].empty()) << found.facts["openings"];
   EXPECT_NE(found.facts["problem"].get<std::string>().find("cut its ends"), std::string::npos);
   EXPECT_GT(found.surface.triangles.size(), 500u);
-  o.cuts = {{4, 3.6, 2.4, -1, 0, 0}, {14, 3.6, 2.4, 1, 0, 0}};
-  EXPECT_EQ(inspect(folder.path() / "round.nii", o, quiet).facts["openings"].size(), 2u);
 }
 
 }  // namespace

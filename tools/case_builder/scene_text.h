@@ -2,21 +2,18 @@
 // The text of a case's scene files.
 #pragma once
 #include "tools/case_builder/clip_plan.h"
+#include "tools/case_builder/region_walls.h"
 #include "tools/case_builder/rules.h"
 #include "tools/case_builder/scenes.h"
 
 namespace insula::case_builder {
 
-struct WallText {
-  std::string regions;
-  double thickness_mm = 0, young_mpa = 0;
-};
 /// What the texts are made of.
 struct SceneFacts {
   std::string name;
   Approach approach;
   Assets assets;
-  std::vector<WallText> walls;
+  std::vector<WallOf> walls;
   std::string tethered;            ///< regions that the surroundings hold
   std::string branches;            ///< centrelines that lead to outlets: their flow is to stay
   Vec3 neck, dome;                 ///< mm

@@ -36,8 +36,7 @@ SceneFacts facts_of(const CaseFolder& folder, const artery::Vessel& v, const Opt
   f.site = o.site, f.difficulty = o.difficulty;
   f.rules = rule_changes(o), f.folder = folder.path;
   f.temporary = temporary_clip;
-  const Json wall = read_json(folder.wall() / "notes.json");
-  for (const Json& w : wall.at("walls")) f.walls.push_back({w.at("regions"), w.at("thickness_mm"), w.at("young_MPa")});
+  f.walls = walls_from(read_json(folder.wall() / "notes.json").at("walls"));
   for (const artery::NamedCurve& c : v.centrelines) {
     if (c.name == "sac") continue;
     f.tethered += (f.tethered.empty() ? "" : " ") + c.region;

@@ -11,6 +11,7 @@
 #include "tools/artery/import_parts.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/mirror.h"
+#include "tools/case_builder/region_walls.h"
 #include "tools/case_builder/tidy.h"
 #include "tools/case_builder/trim.h"
 
@@ -153,25 +154,6 @@ Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<N
   }
 }
 
-std::vector<WallOf> walls_of(const Vessel& v) {
-  std::vector<WallOf> out;
-  std::string vessels;
-  for (const std::string& r : v.regions)
-    if (r != "neck" && r != "sac" && r != "bleb") vessels += (vessels.empty() ? "" : " ") + r;
-  out.push_back({vessels, 0.3, 1.5});
-  // A thin sphere changes its volume by 3 (1 - nu) dP r / (2 E t): the same share for all sizes asks for E in
-  // proportion to r.
-  const auto at = v.dimensions.find("sac_width");
-  const double radius = at == v.dimensions.end() ? 2.8 : 0.5 * std::max(at->second, v.neck ? v.neck->diameter : 0.0);
-  const double young = std::clamp(std::round(100 * 1.05 * radius / 2.8) / 100, 0.6, 4.0);
-  for (const std::string& r : v.regions) {
-    if (r == "neck") out.push_back({r, 0.25, std::max(1.2, young)});
-    if (r == "sac") out.push_back({r, 0.2, young});
-    if (r == "bleb") out.push_back({r, 0.1, young});
-  }
-  return out;
-}
-
 Json neck_json(const Vessel& v, bool mirrored) {
   Json out;
   out["confidence"] = rounded(artery::neck_confidence(v.proposals));
@@ -208,9 +190,8 @@ void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
   Json openings = Json::array();
   for (const auto& cap : v.wall.caps) openings.push_back({{"name", cap.name}, {"calibre_mm", rounded(2 * cap.radius)}});
   json["openings"] = openings;
-  json["walls"] = Json::array();
-  for (const WallOf& w : walls_of(v))
-    json["walls"].push_back({{"regions", w.region}, {"thickness_mm", w.thickness_mm}, {"young_MPa", w.young_mpa}});
+  json["walls"] = to_json(walls_of(v, o));
+  json["proposed_walls"] = to_json(walls_of(v, {}));
   json["neck"] = neck_json(v, o.mirror);
   json["notes"] = to_json(notes);
   write_json(folder.wall() / "notes.json", json);

@@ -8,12 +8,6 @@
 
 namespace insula::case_builder {
 
-/// Thickness and modulus of a region, for its membrane.
-struct WallOf {
-  std::string region;
-  double thickness_mm, young_mpa;
-};
-
 /// A vessel cut off `keep` mm along its centrelines from the neck (0: not at all), made of about `vertices` vertices.
 /// Throws InputError.
 artery::Vessel make_wall(const artery::Surface& surface, const Options& options, std::vector<Note>& notes,
@@ -23,10 +17,6 @@ artery::Vessel make_wall(const artery::Surface& surface, const Options& options,
 artery::Vessel with_proposals(const artery::Surface& surface, const Options& options);
 /// How sure the neck is, and every proposal, in the frame of the author's files.
 Json neck_json(const artery::Vessel& vessel, bool mirrored);
-
-/// Thickness as of real walls; the sac as stiff as lets it change its volume by some 6 % over a beat, whatever its
-/// size.
-std::vector<WallOf> walls_of(const artery::Vessel& vessel);
 
 /// The stage: reads intake/, writes wall/.
 void run_wall(const CaseFolder& folder, const Options& options, Progress& progress);

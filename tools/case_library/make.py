@@ -55,6 +55,9 @@ def build(case, work):
     words += ["--in-place", "--keep", "0 mm", "--inlet", inlet, "--site", case["site"], "--out", CASES]
     for option, value in case.get("options", {}).items():
         words += ["--" + option, value]
+    for region, wall in case.get("walls", {}).items():
+        for parameter, value in wall.items():
+            words += ["--wall", "%s.%s=%s" % (region, parameter, value)]
     subprocess.run(words, check=True, cwd=ROOT)
     for path in sorted(folder.iterdir()):
         if path.name not in KEPT:
@@ -63,7 +66,6 @@ def build(case, work):
         card.write_bytes(picture)
     share_lobes(case, folder, work)
     name_branches(case, artery, folder)
-    stiffen(case, folder)
     set_variables(case, folder)
 
 
@@ -96,22 +98,6 @@ def name_branches(case, artery, folder):
         for old, new in names.items():
             text = text.replace(old, new)
         path.write_text(text, encoding="utf-8")
-
-
-def stiffen(case, folder):
-    """Regions whose wall is not as the case builder proposes, such as a calcified neck or a thin bleb."""
-    path = folder / "artery.xml"
-    text = path.read_text(encoding="utf-8")
-    for region, wall in case.get("walls", {}).items():
-        lines = [line for line in text.split("\n") if '<membrane ' in line and 'regions="%s"' % region in line]
-        if len(lines) != 1:
-            raise SystemExit("artery.xml has no membrane of the region %s alone" % region)
-        new = lines[0]
-        for name, value in wall.items():
-            begin = new.index(name + '="') + len(name) + 2
-            new = new[:begin] + value + new[new.index('"', begin):]
-        text = text.replace(lines[0], new)
-    path.write_text(text, encoding="utf-8")
 
 
 def set_variables(case, folder):

@@ -83,13 +83,14 @@ Json Studio::built_json(const StudioProject& p) const {
   const fs::path folder = case_folder(p);
   if (folder.empty()) return nullptr;
   const Json report = read_json(folder / "report.json"), scenes = read_json(folder / "scenes.json");
-  const Json rules = read_json(folder / "rules.json");
+  const Json rules = read_json(folder / "rules.json"), wall = read_json(folder / "wall/notes.json");
   return {{"current", p.work["built"].value("choices", Json()) == p.choices()},
           {"number", p.work["built"].value("folder", "")},
           {"report", report.is_object() ? report : Json::object()},
           {"clip", scenes.is_object() && scenes.contains("clip") ? scenes["clip"] : Json()},
           {"clips", scenes.is_object() && scenes.contains("clips") ? scenes["clips"] : Json::array()},
           {"rules", rules.is_array() ? rules : Json::array()},
+          {"walls", wall.is_object() ? wall.value("proposed_walls", Json::array()) : Json::array()},
           {"exercises", exercises_in(folder)}};
 }
 

@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 constexpr double far_away = 1e6;  // mm
 constexpr std::size_t most_cuts = 12;
 constexpr std::size_t most_strokes = 100, most_points = 200;
-constexpr std::size_t most_rule_changes = 200;
+constexpr std::size_t most_changes = 200;
 
 bool is_number(const Json& v, double least, double most) {
   return v.is_number() && std::isfinite(v.get<double>()) && v.get<double>() >= least && v.get<double>() <= most;
@@ -58,13 +58,24 @@ bool is_one_of(const Json& v, std::initializer_list<const char*> values) {
   return v.is_string() && std::any_of(values.begin(), values.end(), [&](const char* one) { return v == one; });
 }
 
+/// "name.parameter=value", on one line.
+bool is_change(const Json& v) {
+  if (!v.is_string()) return false;
+  const std::string& s = v.get_ref<const std::string&>();
+  const std::size_t dot = s.find('.');
+  return s.size() < 200 && dot != 0 && dot != std::string::npos && s.find('=') != std::string::npos &&
+         s.find_first_of("\n\r") == std::string::npos;
+}
+
+bool are_changes(const Json& v) {
+  return v.is_array() && v.size() <= most_changes && std::all_of(v.begin(), v.end(), is_change);
+}
+
 /// As tools/case_builder/rules.h reads changes of a case's rules.
 bool are_rule_changes(const Json& v) {
-  return v.is_array() && v.size() <= most_rule_changes && std::all_of(v.begin(), v.end(), [](const Json& one) {
-           if (!one.is_string()) return false;
-           const std::string& s = one.get_ref<const std::string&>();
-           return s.size() > 4 && s.size() < 200 && s[0] >= '1' && s[0] <= '4' && s[1] == '.' &&
-                  s.find('=') != std::string::npos && s.find_first_of("\n\r") == std::string::npos;
+  return are_changes(v) && std::all_of(v.begin(), v.end(), [](const Json& one) {
+           const char exercise = one.get_ref<const std::string&>()[0];
+           return exercise >= '1' && exercise <= '4' && one.get_ref<const std::string&>()[1] == '.';
          });
 }
 
@@ -111,6 +122,7 @@ const std::map<std::string, Rule>& rules() {
       {"vertices", {whole(400, 6000), "a wall has from 400 to 6000 vertices"}},
       {"spin_deg",
        {[](const Json& v) { return v.is_null() || is_number(v, -360, 360); }, "a turn is from -360 to 360 degrees"}},
+      {"walls", {are_changes, "a wall is changed by its region, thickness or young, and a value"}},
       {"rehearse", {is_switch, "the exercises are played, or not"}},
       {"rules", {are_rule_changes, "a goal is changed by its exercise, its name and a value"}},
       {"clip", {is_clip, "this is no clip"}},
@@ -155,6 +167,7 @@ Json first_choices() {
           {"rebuild_mm", nullptr},
           {"keep_mm", 13},
           {"vertices", 1650},
+          {"walls", Json::array()},
           {"spin_deg", nullptr},
           {"rehearse", true},
           {"plays", 16},
@@ -219,6 +232,7 @@ std::vector<std::string> case_words(const Json& c) {
   if (!c["inlet"].is_null()) add("--inlet", place(c["inlet"]));
   if (c["keep_mm"] != before["keep_mm"]) add("--keep", fmt::format("{:g} mm", c["keep_mm"].get<double>()));
   if (c["vertices"] != before["vertices"]) add("--vertices", std::to_string(c["vertices"].get<int>()));
+  for (const Json& change : c["walls"]) add("--wall", change.get<std::string>());
   if (!c["spin_deg"].is_null()) add("--spin", fmt::format("{:g} deg", c["spin_deg"].get<double>()));
   if (c["rehearse"] == false) out.emplace_back("--no-rehearse");
   if (c["plays"] != before["plays"]) add("--plays", std::to_string(c["plays"].get<int>()));

@@ -11,7 +11,8 @@ namespace insula::gateway {
 /// - of a scan: threshold: null | number, label: null | number, seed: null | [3], around_mm: null | number,
 ///   paint: [{erase, radius_mm, points: [[3]]}].
 /// - of the surface: unit, mirror, any_size, cuts: [[6]], rebuild_mm: null | number.
-/// - of the vessel: neck: null | {plane: [6]} | {points: [6]}, inlet: null | [3], keep_mm, vertices.
+/// - of the vessel: neck: null | {plane: [6]} | {points: [6]}, inlet: null | [3], keep_mm, vertices,
+///   walls: ["neck.young=7 MPa"].
 /// - of the case: spin_deg: null | number, rehearse, plays, site, difficulty, rules: ["3.clip.max_grade=1"],
 ///   clip: "" | name, lift_mm, slide_mm, turn_deg: null | number.
 nlohmann::json first_choices();

@@ -60,9 +60,13 @@ TEST(StudioChoices, AreOptionsOfTheCommand) {
   EXPECT_EQ(case_words(c)[3], "1.000 2.000 3.000 mm 0.0000 0.0000 1.0000");
 }
 
-TEST(StudioChoices, ChangesOfRulesBecomeOptions) {
-  const json c = changed_choices(first_choices(), {{"rules", {"3.clip.max_grade=1", "4.chance=off"}}});
-  EXPECT_EQ(case_words(c), (std::vector<std::string>{"--rule", "3.clip.max_grade=1", "--rule", "4.chance=off"}));
+TEST(StudioChoices, ChangesOfWallsAndRulesBecomeOptions) {
+  const json c = changed_choices(first_choices(),
+                                 {{"rules", {"3.clip.max_grade=1", "4.chance=off"}}, {"walls", {"neck.young=7 MPa"}}});
+  EXPECT_EQ(case_words(c), (std::vector<std::string>{"--wall", "neck.young=7 MPa", "--rule", "3.clip.max_grade=1",
+                                                     "--rule", "4.chance=off"}));
+  for (const char* wrong : {"neck", "neck.young", ".young=7 MPa", "neck.young=7\nMPa"})
+    EXPECT_THROW(changed_choices(first_choices(), {{"walls", {wrong}}}), InputError) << wrong;
 }
 
 TEST_F(StudioTest, AClipIsTriedOverTheNeckOfABuiltCase) {

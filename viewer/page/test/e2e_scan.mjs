@@ -170,7 +170,8 @@ try {
   check('a seed keeps its piece only');
   p = await surface(page, (c) => c.seed === null);
   assert.ok(p.inspect.facts.size_mm[0] > 25, JSON.stringify(p.inspect.facts.size_mm));
-  assert.match(p.inspect.facts.problem, /cut its ends/);
+  assert.equal(p.inspect.facts.problem, '', 'its round ends were cut');
+  assert.equal(p.inspect.facts.openings.length, 3);
 
   // A bridge from the parent to the speck is painted with the brush, and taken back.
   await page.getByLabel('A drag in a slice').selectOption('paint');

@@ -171,6 +171,14 @@ try {
   assert.deepEqual(await axeFinds(page), []);
   await shot(page, 'goals');
   await picture(page, 'goals', step(page, '6. Goals and limits'));
+  const stiffness = page.getByRole('group', { name: 'Neck' }).getByLabel('Stiffness (Young’s modulus)');
+  await stiffness.fill('2 kg');
+  await page.locator('[id="wall-neck-young-about"].bad').waitFor(patience);
+  await stiffness.fill('7');
+  await stiffness.press('Tab');
+  await waitFor('stiff neck', async () => (await project(page, 'narrow_neck')).choices.walls[0] === 'neck.young=7 MPa');
+  assert.deepEqual(await axeFinds(page), []);
+  await shot(page, 'walls');
   await page.getByRole('button', { name: 'Build', exact: true }).click();
   await page.locator('.stages .now').waitFor(patience);
   await page.getByText('Choices have changed since: build again.').waitFor({ state: 'hidden', ...patience });
@@ -178,7 +186,9 @@ try {
   const text = readFileSync(join(data, 'studio/narrow_neck', built.number, 'narrow_neck/3_clipping.xml'), 'utf8');
   assert.match(text, /max_grade="1"/);
   assert.doesNotMatch(text, /<time_limit/);
-  check('a goal and a limit are changed by a form, taken back, and built');
+  const wall = readFileSync(join(data, 'studio/narrow_neck', built.number, 'narrow_neck/artery.xml'), 'utf8');
+  assert.match(wall, /regions="neck" thickness="[0-9.]+ mm" young="7 MPa"/);
+  check('a goal, a limit and the stiffness of the neck are changed by forms, and built');
 
   await page.locator('.clip select').selectOption('angled_60_6');
   await page.getByLabel('Higher over the neck, mm').fill('-0.5');

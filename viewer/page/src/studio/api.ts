@@ -69,6 +69,8 @@ export interface Choices {
   inlet: Point | null;
   rebuildMm: number | null;
   vertices: number;
+  /** Changes of regions' walls: "neck.young=7 MPa". */
+  walls: string[];
   rehearse: boolean;
   site: string;
   difficulty: number;
@@ -79,6 +81,13 @@ export interface Choices {
   liftMm: number | null;
   slideMm: number | null;
   turnDeg: number | null;
+}
+
+/** As proposed. */
+export interface RegionWall {
+  regions: string;
+  thicknessMm: number;
+  youngMpa: number;
 }
 
 /** state: '', 'running', 'done', 'failed', 'cancelled' or 'interrupted'. */
@@ -106,6 +115,7 @@ export interface Built {
   problems: { id: string; text: string; whatToDo: string }[];
   exercises: string[];
   rules: ExerciseRules[];
+  walls: RegionWall[];
   clips: LibraryClip[];
 }
 
@@ -166,6 +176,7 @@ function choicesOf(value: unknown): Choices {
     inlet: pointOrNull(c.inlet),
     rebuildMm: numberOrNull(c.rebuild_mm),
     vertices: number(c.vertices),
+    walls: Array.isArray(c.walls) ? c.walls.map(text) : [],
     rehearse: c.rehearse === true,
     site: text(c.site),
     difficulty: number(c.difficulty),
@@ -238,6 +249,11 @@ function builtOf(value: unknown): Built | null {
     })),
     exercises: b.exercises.map(text),
     rules: exerciseRulesOf(b.rules),
+    walls: list(b.walls).map((w) => ({
+      regions: text(w.regions),
+      thicknessMm: number(w.thickness_mm),
+      youngMpa: number(w.young_MPa),
+    })),
     clips: libraryOf(b.clips),
   };
 }

@@ -17,6 +17,7 @@ import { ScanStep } from './scan/scan_step';
 import { Views } from './scan/views';
 import type { ScenesApi } from './scene_editor/api';
 import { SurfaceView } from './surface_view';
+import { WallPanel } from './wall_panel';
 import { reason } from './wording';
 
 const everyMs = 600;
@@ -71,6 +72,7 @@ export class Editor {
       new ResultPanel(asks, api),
       new GoalsPanel(asks, scenes),
       new ClipPanel(asks, this.view),
+      new WallPanel(asks, scenes),
     ];
     this.undo.onclick = () => void this.act('undo');
     this.redo.onclick = () => void this.act('redo');

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One goal, fault, clock or complication: whether it counts, and its numbers as their declaration allows them.
-import { el, setText } from '../../hud/dom';
+import { el } from '../../hud/dom';
 import { said } from '../../languages/said';
-import { text } from '../../languages/text';
 import { toggle } from '../fields';
+import { parameterField } from '../parameter_field';
 import type { ElementKind, Parameter } from '../scene_editor/declarations';
-import { faultOf, joined, partsOf, rangeText } from '../scene_editor/values';
 import { complicationWords, parameterWords } from './parameter_words';
 import type { Rule } from './rules';
 
@@ -39,33 +38,11 @@ export class RuleRow {
   }
 
   private field(p: Parameter, id: string): HTMLElement {
-    const proposed = this.rule.values.get(p.name) ?? p.fallback;
-    const value = this.asks.chosen(p.name) ?? proposed;
-    const unit = partsOf(proposed)?.unit ?? '';
-    const input = el('input', { type: 'text', autocomplete: 'off', id, 'aria-describedby': `${id}-about` });
-    const parts = partsOf(value);
-    input.value = parts && parts.unit === unit ? parts.numbers : value;
-    const about = el('p', { class: 'hint', id: `${id}-about` });
-    const typed = () => {
-      const given = partsOf(input.value);
-      return given && given.unit === '' ? joined({ ...given, unit }) : input.value.trim();
-    };
-    const tell = () => {
-      const fault = faultOf(p, typed());
-      about.className = fault === '' ? 'hint' : 'bad';
-      input.setAttribute('aria-invalid', String(fault !== ''));
-      const range = rangeText(p);
-      setText(about, fault || (range === '' ? '' : text('Range: {range}', { range })));
-      return fault === '';
-    };
-    input.oninput = tell;
-    input.onchange = () => {
-      if (input.value.trim() === '') return this.asks.choose(p.name, null);
-      if (tell()) this.asks.choose(p.name, typed() === proposed ? null : typed());
-    };
-    tell();
     const words = parameterWords(this.rule.element, p.name);
-    const label = el('label', { for: id }, words === '' ? el('span', { lang: 'en' }, p.doc) : words);
-    return el('div', { class: 'rule-value' }, label, el('span', {}, input, ' ', unit), about);
+    return parameterField(p, id, words, {
+      proposed: this.rule.values.get(p.name) ?? p.fallback,
+      chosen: this.asks.chosen(p.name),
+      choose: (value) => this.asks.choose(p.name, value),
+    });
   }
 }

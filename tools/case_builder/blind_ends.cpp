@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/case_builder/blind_ends.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <numeric>
+#include <queue>
+
+#include "core/base/input_error.h"
+#include "tools/case_builder/openings.h"
+
+namespace insula::case_builder {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double least_prominence = 0.03;   // of the longest distance: what sticks out less is no end
+constexpr int levels = 160;                 // of the distance from a tip, up to the farthest point
+constexpr double small_loop = 0.3;          // of the longest loop of a level: less is a bump
+constexpr int sure_fork = 4;                // levels in a row with two long loops
+constexpr double same_calibre = 1.3;        // largest over least diameter along a piece of one tube
+constexpr double full_calibre = 0.93;       // of the diameter farther in, where an end is cut
+constexpr std::size_t hidden_sections = 3;  // in a row, within a tube
+constexpr double vessel_length = 0.8;       // diameters of one calibre: a short vessel, or a sac
+constexpr double sure_length = 2;           // diameters of one calibre, which no sac has
+constexpr double farthest = 8;              // diameters of the tube that are looked at
+
+/// The edges of a surface, with shortest distances along them.
+class Geodesics {
+ public:
+  explicit Geodesics(const TriMesh& m) : m_(m), beside_(m.vertices.size()) {
+    for (const auto& t : m.triangles)
+      for (std::size_t k = 0; k < 3; ++k) beside_[std::size_t(t[k])].push_back(t[(k + 1) % 3]);
+  }
+  const std::vector<int>& beside(int v) const { return beside_[std::size_t(v)]; }
+  std::vector<double> from(int start) const {
+    std::vector<double> d(beside_.size(), infinity);
+    std::priority_queue<std::pair<double, int>, std::vector<std::pair<double, int>>, std::greater<>> open;
+    d[std::size_t(start)] = 0, open.emplace(0.0, start);
+    while (!open.empty()) {
+      const auto [near, v] = open.top();
+      open.pop();
+      if (near > d[std::size_t(v)]) continue;
+      for (const int w : beside(v)) {
+        const double next = near + (m_.vertices[std::size_t(w)] - m_.vertices[std::size_t(v)]).norm();
+        if (next < d[std::size_t(w)]) d[std::size_t(w)] = next, open.emplace(next, w);
+      }
+    }
+    return d;
+  }
+
+ private:
+  const TriMesh& m_;
+  std::vector<std::vector<int>> beside_;
+};
+
+int farthest_vertex(const std::vector<double>& d) {
+  int out = 0;
+  for (std::size_t i = 0; i < d.size(); ++i)
+    if (std::isfinite(d[i]) && d[i] > d[std::size_t(out)]) out = int(i);
+  return out;
+}
+
+int root_of(std::vector<int>& parent, int v) {
+  while (parent[std::size_t(v)] != v) v = parent[std::size_t(v)] = parent[std::size_t(parent[std::size_t(v)])];
+  return v;
+}
+
+/// The maxima of `d` that rise `least` or more over the pass to a higher one (persistence of superlevel sets).
+std::vector<int> prominent_maxima(const Geodesics& g, const std::vector<double>& d, double least) {
+  std::vector<int> order(d.size()), parent(d.size(), -1), out;
+  std::iota(order.begin(), order.end(), 0);
+  std::erase_if(order, [&](int v) { return !std::isfinite(d[std::size_t(v)]); });
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return d[std::size_t(a)] != d[std::size_t(b)] ? d[std::size_t(a)] > d[std::size_t(b)] : a < b;
+  });
+  for (const int v : order) {
+    parent[std::size_t(v)] = v;
+    for (const int w : g.beside(v)) {
+      if (parent[std::size_t(w)] < 0) continue;
+      int high = root_of(parent, w), low = root_of(parent, v);  // a root is the highest vertex of its part
+      if (high == low) continue;
+      if (d[std::size_t(high)] < d[std::size_t(low)]) std::swap(high, low);
+      if (d[std::size_t(low)] - d[std::size_t(v)] >= least) out.push_back(low);
+      parent[std::size_t(low)] = high;
+    }
+  }
+  if (!order.empty()) out.push_back(order.front());
+  return out;
+}
+
+/// A closed line on the surface.
+struct Loop {
+  Vec3 middle = Vec3::Zero();
+  double length = 0, diameter = 0;  ///< mm; diameter of the circle of equal area
+};
+
+/// The loops on which a function of the vertices has a value.
+std::vector<Loop> loops_at(const TriMesh& m, const std::vector<double>& f, double value) {
+  std::map<std::pair<int, int>, int> crossed;  // edges, numbered
+  std::vector<Vec3> point;
+  std::vector<int> parent;
+  std::vector<std::array<int, 2>> segments;  // with higher values to their left
+  for (const auto& t : m.triangles) {
+    int in = -1, out = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int from = t[k], to = t[(k + 1) % 3], a = std::min(from, to), b = std::max(from, to);
+      const double fa = f[std::size_t(a)] - value, fb = f[std::size_t(b)] - value;
+      if ((fa > 0) == (fb > 0)) continue;
+      const auto [at, fresh] = crossed.emplace(std::pair(a, b), int(point.size()));
+      if (fresh) {
+        const double share = fa / (fa - fb);
+        point.push_back((1 - share) * m.vertices[std::size_t(a)] + share * m.vertices[std::size_t(b)]);
+        parent.push_back(at->second);
+      }
+      (f[std::size_t(to)] > value ? in : out) = at->second;
+    }
+    if (in < 0 || out < 0) continue;
+    segments.push_back({in, out});
+    parent[std::size_t(root_of(parent, in))] = root_of(parent, out);
+  }
+  std::map<int, std::pair<Loop, Vec3>> loops;  // and twice the area
+  for (const auto& [i, j] : segments) {
+    const Vec3 &a = point[std::size_t(i)], &b = point[std::size_t(j)];
+    auto& [loop, area] = loops.try_emplace(root_of(parent, i), Loop(), Vec3::Zero()).first->second;
+    loop.length += (b - a).norm(), loop.middle += (b - a).norm() * 0.5 * (a + b), area += a.cross(b);
+  }
+  std::vector<Loop> out;
+  for (auto& [root, of] : loops) {
+    if (!(of.first.length > 0)) continue;
+    of.first.middle /= of.first.length;
+    of.first.diameter = 2 * std::sqrt(0.5 * of.second.norm() / std::numbers::pi);
+    out.push_back(of.first);
+  }
+  return out;
+}
+
+/// The plane section of the vessel whose middle is nearest to a point, of those with a diameter of `least` or more.
+Loop section(const TriMesh& m, const Vec3& at, const Vec3& normal, double least) {
+  std::vector<double> height;
+  for (const Vec3& p : m.vertices) height.push_back((p - at).dot(normal));
+  Loop out;
+  double away = infinity;
+  for (const Loop& loop : loops_at(m, height, 0))
+    if (const double d = (loop.middle - at).norm(); loop.diameter >= least && d < away) out = loop, away = d;
+  return out;
+}
+
+/// The lines of equal distance from a tip, inward up to where the surface divides.
+std::vector<Loop> lines_of_distance(const TriMesh& m, const std::vector<double>& d) {
+  const double step = d[std::size_t(farthest_vertex(d))] / levels;
+  std::vector<Loop> out;
+  int divided = 0;  // levels in a row
+  for (int k = 1; k < levels && divided < sure_fork; ++k) {
+    std::vector<Loop> all = loops_at(m, d, k * step);
+    double longest = 0;
+    for (const Loop& loop : all) longest = std::max(longest, loop.length);
+    std::erase_if(all, [&](const Loop& loop) { return loop.length < small_loop * longest; });  // around bumps
+    divided = all.size() > 1 ? divided + 1 : 0;
+    if (all.size() == 1) out.push_back(all.front());
+  }
+  return out;
+}
+
+/// Direction of a line at one of its points, towards its first one, over `span` on both sides.
+Vec3 towards_first(const std::vector<Vec3>& line, std::size_t at, double span) {
+  std::size_t a = at, b = at;
+  while (a > 0 && (line[a] - line[at]).norm() < span) --a;
+  while (b + 1 < line.size() && (line[b] - line[at]).norm() < span) ++b;
+  const Vec3 d = line[a] - line[b];
+  return d.norm() > 0 ? Vec3(d.normalized()) : Vec3(Vec3::UnitZ());
+}
+
+/// Plane sections along a line.
+struct Sections {
+  std::vector<Loop> loop;
+  std::vector<Vec3> outward;  ///< unit, towards the tip
+  std::vector<double> arc;    ///< mm from the first
+};
+Sections sections_along(const TriMesh& m, const std::vector<Loop>& loops) {
+  Sections out;
+  std::vector<Vec3> line;
+  std::vector<double> lengths;
+  for (const Loop& l : loops) line.push_back(l.middle), lengths.push_back(l.length);
+  if (line.size() < 3) return out;
+  std::nth_element(lengths.begin(), lengths.begin() + long(lengths.size() / 2), lengths.end());
+  const double calibre = lengths[lengths.size() / 2] / std::numbers::pi;
+  double arc = 0;
+  for (std::size_t k = 1; k + 1 < line.size(); ++k) {
+    arc += (line[k] - line[k - 1]).norm();
+    if (arc > farthest * calibre) break;
+    // The lines of equal distance lean where the tip is beside the axis, so the direction needs a span.
+    const Vec3 outward = towards_first(line, k, 0.8 * calibre);
+    const double about = loops[k].length / std::numbers::pi;  // the diameter, but for that lean
+    const Loop found = section(m, line[k], outward, 0.4 * about);
+    const bool here = (found.middle - line[k]).norm() < 0.6 * about;
+    out.loop.push_back(here ? found : Loop{line[k], loops[k].length, 0});
+    out.outward.push_back(outward), out.arc.push_back(arc);
+  }
+  return out;
+}
+
+/// A piece of a vessel whose sections have nearly one diameter.
+struct Tube {
+  Vec3 end = Vec3::Zero(), outward = Vec3::UnitZ();  ///< where it is cut
+  double diameter = 0;                               ///< one diameter farther in, mm
+  double length = 0;                                 ///< in diameters
+};
+
+/// Turns the plane in which a tube is cut to lie across it, along the chord between two sections, and moves it inward
+/// to where the tube has its full calibre.
+void straighten(const TriMesh& m, Tube& tube) {
+  const double least = 0.4 * tube.diameter, chord = std::min(0.8, 0.7 * tube.length) * tube.diameter;
+  constexpr int rounds = 12;
+  for (int round = 0; round < rounds; ++round) {
+    const Loop end = section(m, tube.end, tube.outward, least),
+               inner = section(m, tube.end - chord * tube.outward, tube.outward, least);
+    const Vec3 along = end.middle - inner.middle;
+    const bool of_it = inner.diameter > 0 && inner.diameter < 1.5 * tube.diameter && end.diameter > 0 &&
+                       end.diameter < 1.5 * tube.diameter && along.norm() > 0.5 * chord;
+    if (!of_it) return;
+    const Vec3 turned = along.normalized();
+    const bool settled = turned.dot(tube.outward) > 0.999 && end.diameter > full_calibre * tube.diameter;
+    tube.outward = turned, tube.end = end.middle;
+    if (settled) return;
+    if (end.diameter < full_calibre * tube.diameter) tube.end -= 0.12 * tube.diameter * tube.outward;
+  }
+}
+
+/// The first tube of a vessel's length on the way from a tip inward, or else the longest.
+Tube tube_at(const TriMesh& m, const std::vector<Loop>& lines) {
+  const Sections s = sections_along(m, sections_along(m, lines).loop);
+  Tube best;
+  double begin = 0;  // of the best one, mm from the tip
+  for (std::size_t first = 0; first < s.loop.size(); ++first) {
+    std::vector<double> diameters;
+    double low = infinity, high = 0;
+    std::size_t last = first;
+    // Noise may hide a section or two.
+    for (std::size_t k = first; k < s.loop.size() && k <= last + hidden_sections; ++k) {
+      const double d = s.loop[k].diameter;
+      if (d <= 0) continue;
+      low = std::min(low, d), high = std::max(high, d);
+      if (!(high < same_calibre * low)) break;
+      diameters.push_back(d), last = k;
+    }
+    if (diameters.empty()) continue;
+    std::nth_element(diameters.begin(), diameters.begin() + long(diameters.size() / 2), diameters.end());
+    const double median = diameters[diameters.size() / 2];
+    // The chord: sections that stay where they are make no tube.
+    const double length = (s.loop[last].middle - s.loop[first].middle).norm() / median;
+    if (best.length > vessel_length && s.arc[first] > begin + best.diameter) break;
+    if (!(length > best.length)) continue;
+    // A vessel may taper: its calibre is that of a section one diameter farther in.
+    std::size_t cut = first, inner = first;
+    for (; cut < last; ++cut) {
+      while (inner < last && (s.loop[inner].middle - s.loop[cut].middle).norm() < median) ++inner;
+      if (s.loop[cut].diameter > full_calibre * s.loop[inner].diameter) break;
+    }
+    const Vec3 along = s.loop[cut].middle - s.loop[inner].middle;
+    best = {s.loop[cut].middle, along.norm() > 0 ? Vec3(along.normalized()) : s.outward[cut], s.loop[inner].diameter,
+            length};
+    begin = s.arc[first];
+  }
+  straighten(m, best);
+  return best;
+}
+
+bool on_cap(const artery::Surface& s, const Vec3& p) {
+  return std::any_of(s.caps.begin(), s.caps.end(),
+                     [&](const artery::CapPlane& cap) { return (p - cap.centre).norm() < 1.5 * cap.radius; });
+}
+
+}  // namespace
+
+void cut_blind_ends(artery::Surface& s, std::vector<Note>& notes) {
+  const Geodesics geodesics(s.mesh);
+  const std::vector<double> d = geodesics.from(farthest_vertex(geodesics.from(s.mesh.triangles.front()[0])));
+  std::vector<int> tips = prominent_maxima(geodesics, d, least_prominence * d[std::size_t(farthest_vertex(d))]);
+  tips.push_back(int(std::min_element(d.begin(), d.end()) - d.begin()));
+  std::vector<Tube> ends;
+  for (const int tip : tips)
+    if (!on_cap(s, s.mesh.vertices[std::size_t(tip)]))
+      ends.push_back(tube_at(s.mesh, lines_of_distance(s.mesh, geodesics.from(tip))));
+  std::stable_sort(ends.begin(), ends.end(), [](const Tube& a, const Tube& b) { return a.length < b.length; });
+  // The one that is least like a vessel is the sac, unless the sac is so low that it is no end at all.
+  const bool few = s.caps.size() < 2;
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    const Tube& e = ends[k];
+    if (e.length < (k == 0 || !few ? sure_length : vessel_length)) continue;
+    try {
+      cut_off(s, e.end, e.outward, fmt::format("end_{}", s.caps.size()));
+    } catch (const InputError&) {
+      continue;  // no single tube there
+    }
+    notes.push_back(
+        {Note::Kind::repair,
+         fmt::format("The end at {} was closed and not flat. It was cut straight where the vessel is {:.2f} mm "
+                     "wide.",
+                     place(e.end), e.diameter),
+         "Where it should end farther in, cut it there (--cut)."});
+  }
+}
+
+}  // namespace insula::case_builder

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Ends that are closed: of thirty generated arteries, rounded, and flat under noise. The sac stays whole.
+#include "tools/case_builder/blind_ends.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "tools/artery/generated_artery_for_test.h"
+#include "tools/artery/import_parts.h"
+
+namespace insula::case_builder {
+namespace {
+
+using artery::Surface;
+using artery::test::GeneratedArtery;
+
+struct TrueEnd {
+  Vec3 at, outward;
+  double radius;
+};
+std::vector<TrueEnd> true_ends(const GeneratedArtery& a) {
+  std::vector<TrueEnd> out;
+  for (const auto& l : a.limbs) {
+    const std::size_t last = l.curve.size() - 1;
+    if (l.capped_first) out.push_back({l.curve.points[0], -l.curve.tangent(0), l.curve.radius[0]});
+    if (l.capped_last) out.push_back({l.curve.points[last], l.curve.tangent(last), l.curve.radius[last]});
+  }
+  return out;
+}
+
+/// The artery as its function ends it, by half balls, without a cap.
+Surface with_round_ends(GeneratedArtery a) {
+  for (auto& l : a.limbs) l.capped_first = l.capped_last = false;
+  return a.surface();
+}
+
+/// Flat ends that are no longer known, and that noise hides.
+Surface with_noisy_ends(const GeneratedArtery& a, double noise) {
+  Surface s = a.surface();
+  s.caps.clear();
+  std::fill(s.patch.begin(), s.patch.end(), -1);
+  std::mt19937 generator(7);
+  std::normal_distribution<double> push(0, noise);
+  for (Vec3& p : s.mesh.vertices)
+    for (int k = 0; k < 3; ++k) p[k] += push(generator);
+  return s;
+}
+
+void expect_the_ends(const GeneratedArtery& a, Surface s, double shortest) {
+  std::vector<Note> notes;
+  cut_blind_ends(s, notes);
+  const std::vector<TrueEnd> ends = true_ends(a);
+  EXPECT_EQ(s.caps.size(), ends.size());
+  EXPECT_EQ(notes.size(), s.caps.size());
+  for (const TrueEnd& e : ends) {
+    double least = 1e300;
+    const artery::CapPlane* cap = nullptr;
+    for (const artery::CapPlane& c : s.caps)
+      if (const double away = (c.centre - e.at).norm(); away < least) least = away, cap = &c;
+    ASSERT_TRUE(cap);
+    const double back = (e.at - cap->centre).dot(e.outward);
+    EXPECT_GT(back, -0.6 * e.radius);
+    EXPECT_LT(back, shortest * e.radius);
+    EXPECT_LT((e.at - cap->centre - back * e.outward).norm(), 0.5 * e.radius);
+    EXPECT_GT(cap->normal.dot(e.outward), std::cos(20 * std::numbers::pi / 180));
+    EXPECT_NEAR(cap->radius, e.radius, 0.2 * e.radius);
+  }
+  EXPECT_TRUE(artery::quality(s.mesh).closed);
+  // Nothing of the sac has gone.
+  double farthest = 0;
+  for (const Vec3& p : s.mesh.vertices)
+    if (a.of_dome(p) < 0.5) farthest = std::max(farthest, (p - a.dome.root).dot(a.dome.axis));
+  EXPECT_GT(farthest, (a.dome.lift + 2) * a.dome.half_height - 0.5);
+}
+
+class BlindEnds : public testing::TestWithParam<GeneratedArtery> {};
+
+TEST_P(BlindEnds, RoundOnesAreCutWhereTheVesselHasItsCalibre) {
+  expect_the_ends(GetParam(), with_round_ends(GetParam()), 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Thirty, BlindEnds, testing::ValuesIn(artery::test::generated_arteries()),
+                         [](const auto& p) { return p.param.name; });
+
+class NoisyEnds : public testing::TestWithParam<GeneratedArtery> {};
+
+TEST_P(NoisyEnds, FlatOnesUnderNoiseAreCut) { expect_the_ends(GetParam(), with_noisy_ends(GetParam(), 0.06), 3); }
+
+/// One of each kind, and those that once were cut in the wrong place.
+std::vector<GeneratedArtery> some_arteries() {
+  std::vector<GeneratedArtery> out;
+  for (const GeneratedArtery& a : artery::test::generated_arteries())
+    for (const char* name :
+         {"fork_plain", "fork_narrow", "side_tilted", "side_with_branch", "giant_fork", "blister", "kissing_branch"})
+      if (a.name == name) out.push_back(a);
+  return out;
+}
+INSTANTIATE_TEST_SUITE_P(Some, NoisyEnds, testing::ValuesIn(some_arteries()),
+                         [](const auto& p) { return p.param.name; });
+
+TEST(BlindEnds, KnownEndsAndTheSacBetweenThemStay) {
+  for (const GeneratedArtery& a : artery::test::generated_arteries()) {
+    Surface s = a.surface();
+    const std::size_t triangles = s.mesh.triangles.size();
+    std::vector<Note> notes;
+    cut_blind_ends(s, notes);
+    EXPECT_TRUE(notes.empty()) << a.name << ": " << notes.front().text;
+    EXPECT_EQ(s.mesh.triangles.size(), triangles) << a.name;
+  }
+}
+
+}  // namespace
+}  // namespace insula::case_builder
