@@ -26,7 +26,7 @@ constexpr int sure_fork = 4;                // levels in a row with two long loo
 constexpr double same_calibre = 1.3;        // largest over least diameter along a piece of one tube
 constexpr double full_calibre = 0.93;       // of the diameter farther in, where an end is cut
 constexpr std::size_t hidden_sections = 3;  // in a row, within a tube
-constexpr double vessel_length = 0.8;       // diameters of one calibre: a short vessel, or a sac
+constexpr double vessel_length = 1.4;       // diameters of one calibre: a short vessel, or a sac
 constexpr double sure_length = 2;           // diameters of one calibre, which no sac has
 constexpr double farthest = 8;              // diameters of the tube that are looked at
 
@@ -289,10 +289,9 @@ void cut_blind_ends(artery::Surface& s, std::vector<Note>& notes) {
       ends.push_back(tube_at(s.mesh, lines_of_distance(s.mesh, geodesics.from(tip))));
   std::stable_sort(ends.begin(), ends.end(), [](const Tube& a, const Tube& b) { return a.length < b.length; });
   // The one that is least like a vessel is the sac, unless the sac is so low that it is no end at all.
-  const bool few = s.caps.size() < 2;
   for (std::size_t k = 0; k < ends.size(); ++k) {
     const Tube& e = ends[k];
-    if (e.length < (k == 0 || !few ? sure_length : vessel_length)) continue;
+    if (e.length < (k == 0 ? sure_length : vessel_length)) continue;
     try {
       cut_off(s, e.end, e.outward, fmt::format("end_{}", s.caps.size()));
     } catch (const InputError&) {
