@@ -26,11 +26,12 @@ LIBRARIES = re.compile(r"""(Eigen|fmt|spdlog|nlohmann|gtest|assimp|urdf_world|ur
     |insula_lcm|lcm|fast_float)/ | (cholmod|expat|zlib|zstd)\.h$""", re.X)
 # Of a processor or of a compiler: only where #if says that it is there.
 CONDITIONAL = {"immintrin.h", "xmmintrin.h", "cpuid.h", "sanitizer/lsan_interface.h"}
-POSIX = """fork execv execvp posix_spawn waitpid kill getpid getppid gettid setpgid pipe pipe2 dup2 fcntl poll
-    epoll_wait socket setsockopt mmap munmap mkstemp setenv unsetenv isatty fileno fdopen popen pclose localtime_r gmtime_r
-    timegm strerror_r strsignal readlink realpath usleep nanosleep clock_gettime sysconf syscall prctl setpriority
-    sigaction sigprocmask pthread_self pthread_kill pthread_setname_np sched_setscheduler sched_setaffinity dlopen dlsym
-    dlclose ftruncate fsync geteuid getuid""".split()
+POSIX = """
+    fork execv execvp posix_spawn waitpid kill getpid getppid gettid setpgid pipe pipe2 dup2 fcntl poll
+    epoll_wait socket setsockopt mmap munmap mkstemp setenv unsetenv isatty fileno fdopen popen pclose
+    localtime_r gmtime_r timegm strerror_r strsignal readlink realpath usleep nanosleep clock_gettime sysconf
+    syscall prctl setpriority sigaction sigprocmask pthread_self pthread_kill pthread_setname_np
+    sched_setscheduler sched_setaffinity dlopen dlsym dlclose ftruncate fsync geteuid getuid""".split()
 # A member of that name is called on an object, and one of a namespace by its name.
 CALL = re.compile(r"(?<![\w.>:])(?:::)?(%s)\s*\(" % "|".join(POSIX))
 DECLARED = re.compile(r"[\w>&*]\s+[&*]?$")  # "std::string realpath(": a function of that name is declared

@@ -1,27 +1,35 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""libcxx.py SOURCE BUILD [--all]: core/ and plugins/ compile with clang and its own standard library, libc++.
+"""libcxx.py SOURCE BUILD [--all | --tests]: core/ and plugins/ compile with clang and its own standard library, libc++.
 
 Nothing is linked and no code is made: clang reads the sources and says what it refuses. Sources are read in batches,
-since their common headers take most of the time. A batch holds every n-th source, so files of one folder, which may use
-the same short names, are seldom together.
+since their common headers take most of the time. Files that use the same short names are in different batches.
 
---all  each source and each test by itself, with all warnings. It takes several seconds a file.
+A run reads all headers, the kernels, and one batch. The number of commits decides which batch, so a few commits later
+all have been read.
+
+--all    all batches, and the kernels for each instruction set
+--tests  each test by itself; it takes several seconds a file
 
 It needs clang++ (14 or newer), libc++ and a build folder with the generated headers, or else it is skipped (status 77).
 """
 import concurrent.futures
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "style"))
-from sources import tracked  # noqa: E402
+from sources import code_only, tracked  # noqa: E402
 
-BATCHES = 4
+BATCHES = 4  # at least; a file that clashes with all of them gets one of its own
+# The name before the first mark of a declaration at the start of a line; not that of a member.
+DECLARED = re.compile(r"^(?!namespace|template|extern|#|\}|return|public|private)\w[^\n(={;\[:]*?(?:::[^\n(={;\[:]*?)*"
+                      r"(?<!::)\b(\w+)\s*[({=;\[]", re.M)
+WITHIN_KERNELS = re.compile(r"\bKERNEL_\w+")
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-error=deprecated-declarations"]
 LIBRARIES = ["/usr/include/eigen3", "/usr/include/suitesparse", "/usr/include/bullet"]
 # As cmake/core.cmake: name, bytes of a vector, KERNEL_NV, KERNEL_NR, flags.
@@ -56,22 +64,57 @@ def kernel_flags(row):
             "-fno-math-errno", "-Wno-psabi", *flags]
 
 
-def batch(folder, number, files):
-    """One source that includes all of them."""
-    path = folder / ("batch_%d.cpp" % number)
+def names(path):
+    """What a file declares at the start of a line."""
+    return set(DECLARED.findall(code_only(path.read_text(encoding="utf-8"))))
+
+
+def batches(files):
+    """The files in lists of which none declares a name twice, neither in its files nor in the headers beside them."""
+    declared = {f: names(f) for f in files}
+    beside = {folder: set().union(*(names(h) for h in folder.glob("*.h"))) for folder in {f.parent for f in files}}
+
+    def clash(a, b):
+        apart = a.parent != b.parent
+        return declared[a] & declared[b] or apart and (declared[a] & beside[b.parent] or declared[b] & beside[a.parent])
+
+    out = [[] for _ in range(BATCHES)]
+    for f in files:
+        free = [b for b in out if not any(clash(f, other) for other in b)]
+        if free:
+            min(free, key=len).append(f)
+        else:
+            out.append([f])
+    return out
+
+
+def one_source(folder, name, files):
+    """A source that includes all of them."""
+    path = folder / (name + ".cpp")
     path.write_text("".join('#include "%s"\n' % f for f in files))
     return path
 
 
-def jobs(root, folder, each_alone):
+def turn(root):
+    """How many commits there are; 0 without git."""
+    counted = subprocess.run(["git", "-C", str(root), "-c", "safe.directory=*", "rev-list", "--count", "HEAD"],
+                             capture_output=True, text=True)
+    return int(counted.stdout) if counted.returncode == 0 else 0
+
+
+def jobs(root, folder, words):
     """(file, flags) of the compilations."""
     ordinary, kernels, tests = sources(root)
-    if each_alone:
-        yield from ((f, [*WARNINGS, "-Wshadow"]) for f in ordinary + tests)
-    else:
-        yield from ((batch(folder, k, ordinary[k::BATCHES]), WARNINGS) for k in range(BATCHES))
-    for row in SETS if each_alone else SETS[:2]:
-        yield from ((f, WARNINGS[:2] + kernel_flags(row)) for f in kernels)
+    if "--tests" in words:
+        return [(f, WARNINGS) for f in tests]
+    whole = "--all" in words
+    headers = [p for p in tracked(root, ".h") if p.relative_to(root).parts[0] in ("core", "plugins")
+               and not WITHIN_KERNELS.search(p.read_text(encoding="utf-8"))]
+    parts = batches(ordinary)
+    chosen = parts if whole else [parts[turn(root) % len(parts)]]
+    out = [(one_source(folder, "batch_%d" % k, b), WARNINGS) for k, b in enumerate(chosen)]
+    out += [(one_source(folder, "headers", headers), WARNINGS)]
+    return out + [(f, WARNINGS[:2] + kernel_flags(row)) for row in (SETS if whole else SETS[:1]) for f in kernels]
 
 
 def compiles(base, job):
@@ -97,7 +140,7 @@ def main(words):
         print("skipped: " + missing)
         return 77
     with tempfile.TemporaryDirectory() as folder:
-        work = list(jobs(root, pathlib.Path(folder), "--all" in words))
+        work = jobs(root, pathlib.Path(folder), words)
         base = command(compiler, root, build)
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as several:
             results = list(several.map(lambda job: compiles(base, job), work))
