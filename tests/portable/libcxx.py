@@ -27,8 +27,9 @@ from sources import code_only, tracked  # noqa: E402
 
 BATCHES = 4  # at least; a file that clashes with all of them gets one of its own
 # The name before the first mark of a declaration at the start of a line; not that of a member.
-DECLARED = re.compile(r"^(?!namespace|template|extern|#|\}|return|public|private)\w[^\n(={;\[:]*?(?:::[^\n(={;\[:]*?)*"
-                      r"(?<!::)\b(\w+)\s*[({=;\[]", re.M)
+DECLARED = re.compile(r"^(?:\[\[\w+\]\] )?(?!namespace|template|extern|return|public|private)"
+                      r"\w[^\n(={;\[:]*?(?:::[^\n(={;\[:]*?)*(?<!::)\b(\w+)\s*[({=;\[]", re.M)
+INCLUDED = re.compile(r'^\s*#\s*include "([^"]+)"', re.M)
 WITHIN_KERNELS = re.compile(r"\bKERNEL_\w+")
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-error=deprecated-declarations"]
 LIBRARIES = ["/usr/include/eigen3", "/usr/include/suitesparse", "/usr/include/bullet"]
@@ -69,14 +70,27 @@ def names(path):
     return set(DECLARED.findall(code_only(path.read_text(encoding="utf-8"))))
 
 
-def batches(files):
-    """The files in lists of which none declares a name twice, neither in its files nor in the headers beside them."""
-    declared = {f: names(f) for f in files}
-    beside = {folder: set().union(*(names(h) for h in folder.glob("*.h"))) for folder in {f.parent for f in files}}
+def headers_of(path, root, known):
+    """The project's headers that a file includes, directly or not."""
+    if path not in known:
+        known[path] = set()
+        direct = {root / name for name in INCLUDED.findall(path.read_text(encoding="utf-8")) if (root / name).is_file()}
+        known[path] = direct.union(*(headers_of(h, root, known) for h in direct))
+    return known[path]
+
+
+def batches(root, files):
+    """The files in lists in which no file declares a name that another one, or a header of it, declares too."""
+    known = {}
+    headers = {f: headers_of(f, root, known) for f in files}
+    declared = {f: names(f) for f in {*files, *known}}
+
+    def names_of_headers(a, b):  # those that b includes and a does not
+        return set().union(*(declared[h] for h in headers[b] - headers[a]))
 
     def clash(a, b):
-        apart = a.parent != b.parent
-        return declared[a] & declared[b] or apart and (declared[a] & beside[b.parent] or declared[b] & beside[a.parent])
+        return (declared[a] & declared[b] or declared[a] & names_of_headers(a, b)
+                or declared[b] & names_of_headers(b, a))
 
     out = [[] for _ in range(BATCHES)]
     for f in files:
@@ -110,7 +124,7 @@ def jobs(root, folder, words):
     whole = "--all" in words
     headers = [p for p in tracked(root, ".h") if p.relative_to(root).parts[0] in ("core", "plugins")
                and not WITHIN_KERNELS.search(p.read_text(encoding="utf-8"))]
-    parts = batches(ordinary)
+    parts = batches(root, ordinary)
     chosen = parts if whole else [parts[turn(root) % len(parts)]]
     out = [(one_source(folder, "batch_%d" % k, b), WARNINGS) for k, b in enumerate(chosen)]
     out += [(one_source(folder, "headers", headers), WARNINGS)]
