@@ -93,6 +93,10 @@ FORMS = (
         r"build/mesh_lobes/insula_mesh_volume .*",
         "its program takes minutes to compile and is built with INSULA_BUILD_TOOLS alone, which brings its tests",
     ),
+    Never(
+        r"\./insula image",
+        "installs mmdebstrap and buildah, fetches a Debian of 60 MB, and needs user namespaces or root",
+    ),
     Never(r"\./insula test", "runs all tests, this one among them"),
     # What other tests do, step by step as on the page.
     Elsewhere(r"\./insula docs --html manual", "docs_html", "builds the site and asks its search"),
@@ -150,6 +154,11 @@ FORMS = (
         "makes that surface",
     ),
     Elsewhere(r"cd build/release && cpack -G DEB", "install_packages", "makes the packages and looks into them"),
+    Elsewhere(
+        r"\./insula apt-repository .*",
+        "install_apt_repository",
+        "makes a repository of small packages, and apt reads it",
+    ),
     Elsewhere(r"cmake --install build/release .*", "install_plugins", "installs into a folder of its own"),
     Elsewhere(
         r"(cmake -S|cmake --build|ctest --test-dir|sudo cmake --install) pia_membrane.*",
