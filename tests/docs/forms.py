@@ -93,10 +93,6 @@ FORMS = (
         r"build/mesh_lobes/insula_mesh_volume .*",
         "its program takes minutes to compile and is built with INSULA_BUILD_TOOLS alone, which brings its tests",
     ),
-    Never(
-        r"\./insula image",
-        "installs mmdebstrap and buildah, fetches a Debian of 60 MB, and needs user namespaces or root",
-    ),
     Never(r"\./insula test", "runs all tests, this one among them"),
     # What other tests do, step by step as on the page.
     Elsewhere(r"\./insula docs --html manual", "docs_html", "builds the site and asks its search"),
