@@ -25,7 +25,7 @@ done
 package=$(realpath "${words[0]}")
 [ -f "$package" ] || fail "$package is no file"
 for tool in mmdebstrap buildah dpkg-deb; do
-  command -v $tool >/dev/null || fail "$tool is not installed: apt-get install mmdebstrap buildah"
+  command -v $tool >/dev/null || fail "$tool is not installed: apt-get install mmdebstrap buildah uidmap"
 done
 [ "$(dpkg-deb --field "$package" Package)" = insula ] || fail "$package is not the package insula"
 version=$(dpkg-deb --field "$package" Version)
