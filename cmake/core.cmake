@@ -34,7 +34,7 @@ endfunction()
 
 function(insula_room name)  # insula_room(NAME USES room... LIBS library...)
   cmake_parse_arguments(R "" "" "USES;LIBS" ${ARGN})
-  insula_glob(sources core/${name}/*.cpp)
+  insula_glob(sources core/${name}/*.cpp platform/${INSULA_PLATFORM}/${name}/*.cpp)
   file(GLOB_RECURSE kernel_files CONFIGURE_DEPENDS core/${name}/*kernels_impl.cpp)
   set(objects)
   if(kernel_files)

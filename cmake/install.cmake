@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What `cmake --install` puts where, in two components, and the Debian packages made of them:
-#   insula      bin/ programs, share/insula/ page, scenes, curricula, meshes, plugin examples, the manual
+#   insula      bin/ programs, share/insula/ page, scenes, curricula, meshes, examples, manual; what desktops need
 #   insula-dev  include/insula/ headers, lib/insula/ libraries, lib/cmake/Insula/ package for find_package(Insula)
 include(CMakePackageConfigHelpers)
 set(share share/insula)
@@ -13,6 +13,8 @@ install(DIRECTORY scenes curricula meshes DESTINATION ${share} COMPONENT insula 
 install(DIRECTORY plugins DESTINATION ${share} COMPONENT insula FILES_MATCHING PATTERN "*.xml")
 install(DIRECTORY docs DESTINATION ${share} COMPONENT insula)
 install(FILES LICENSE README.md DESTINATION ${share} COMPONENT insula)
+install(FILES packaging/desktop/insula.desktop DESTINATION share/applications COMPONENT insula)
+install(FILES packaging/desktop/insula.svg DESTINATION share/icons/hicolor/scalable/apps COMPONENT insula)
 # Folders that only shared plugins fill are made beforehand, so that one sees where they go.
 install(DIRECTORY DESTINATION lib/insula/plugins COMPONENT insula)
 # The page is built by npm (./insula build); an engine without it still runs, checks and reports.

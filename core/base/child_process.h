@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A child process whose output is read line by line. It does not outlive its parent.
+// A child process whose output is read line by line. It does not outlive its parent. The implementation belongs to the
+// operating system (platform/).
 #pragma once
-#include <sys/types.h>
-
 #include <functional>
 #include <optional>
 #include <string>
@@ -32,7 +31,7 @@ class ChildProcess {
   /// executed ends with status 127.
   std::string start(const std::vector<std::string>& command);
   bool running() const { return pid_ > 0; }
-  pid_t pid() const { return pid_; }
+  int pid() const { return pid_; }
   int output() const { return output_; }  ///< descriptor to wait on, -1 when closed
   /// Passes on the complete lines that have arrived. Never waits.
   void read_lines(const Line& line);
@@ -45,7 +44,7 @@ class ChildProcess {
  private:
   void close_output();
 
-  pid_t pid_ = -1;
+  int pid_ = -1;
   int output_ = -1;
   std::string pending_;
 };

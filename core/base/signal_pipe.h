@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Signals as bytes in a pipe, for programs that wait on descriptors.
+// Signals as bytes in a pipe, for programs that wait on descriptors. The implementation belongs to the operating system
+// (platform/).
 #pragma once
+#include <csignal>
 #include <initializer_list>
-#include <utility>
-#include <vector>
-
-#include <signal.h>
+#include <memory>
 
 namespace insula {
 
@@ -26,8 +25,10 @@ class SignalPipe {
   int wait(int timeout_ms) const;
 
  private:
+  struct Before;  // the handlers that were there
+
   int ends_[2] = {-1, -1};
-  std::vector<std::pair<int, struct sigaction>> before_;
+  std::unique_ptr<Before> before_;
 };
 
 }  // namespace insula

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 #include <lcm/lcm.h>
-#include <unistd.h>
 
 #include "core/base/input_error.h"
+#include "core/base/this_process.h"
 
 namespace insula {
 namespace {
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 class EventLogFile : public ::testing::Test {
  protected:
-  fs::path file = fs::temp_directory_path() / ("insula_log_" + std::to_string(::getpid()));
+  fs::path file = fs::temp_directory_path() / ("insula_log_" + std::to_string(process_id()));
   void SetUp() override {
     lcm_eventlog_t* log = lcm_eventlog_create(file.c_str(), "w");
     for (int k = 0; k < 3; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The two sockets of an endpoint of the bus. One sends to a multicast group, the other receives what this machine sent
-// to it. The implementation belongs to the operating system (platform/linux/udp_socket.cpp).
+// to it. The implementation belongs to the operating system (platform/linux/bus/udp_socket.cpp).
 #pragma once
 #include <atomic>
 #include <cstdint>

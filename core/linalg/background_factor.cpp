@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/linalg/background_factor.h"
 
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
+#include "core/base/this_process.h"
 
 namespace insula {
 namespace {
@@ -64,8 +62,7 @@ void BackgroundFactor::drop() {
 }
 
 void BackgroundFactor::work() {
-  // Runs beside the step and the servo with a lower priority.
-  setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), 10);
+  lower_priority_of_this_thread();  // it runs beside the step and the servo
   std::unique_lock lock(mutex_);
   for (;;) {
     wake_.wait(lock, [this] { return state_ == State::asked || stop_; });

@@ -46,6 +46,32 @@ inline float widened_one(Half h) {
 
 constexpr float largest_half = 65504;
 
+#if !defined(__F16C__)
+/// The nearest half of a number that is at most largest_half in size; of two, the even one.
+inline Half nearest_half(float x) {
+#if defined(__FLT16_MANT_DIG__)
+  const _Float16 h = static_cast<_Float16>(x);
+  Half out;
+  std::memcpy(&out, &h, 2);
+  return out;
+#else
+  // clang 14 has no _Float16 for x86. Adding 2^13 times the unit of x's exponent lets the addition round.
+  const float size = x < 0 ? -x : x;
+  unsigned sign, bits;
+  std::memcpy(&sign, &x, 4);
+  std::memcpy(&bits, &size, 4);
+  const unsigned lowest = 113u << 23;  // 2^-14, the least normal half
+  const unsigned exponent = ((bits > lowest ? bits : lowest) & 0x7f800000u) + (13u << 23);
+  float large;
+  std::memcpy(&large, &exponent, 4);
+  const float rounded = (size + large) - large;
+  const float scaled = rounded * 0x1p-112f;
+  std::memcpy(&bits, &scaled, 4);
+  return Half((sign >> 16 & 0x8000u) | bits >> 13);
+#endif
+}
+#endif
+
 void to_half(Half* out, const float* in, long n) {
   const auto bounded = [](float x) {
     return x < largest_half ? (x > -largest_half ? x : -largest_half) : largest_half;
@@ -59,10 +85,7 @@ void to_half(Half* out, const float* in, long n) {
   }
   for (; i < n; ++i) out[i] = _cvtss_sh(bounded(in[i]), _MM_FROUND_TO_NEAREST_INT);
 #else
-  for (; i < n; ++i) {
-    const _Float16 h = static_cast<_Float16>(bounded(in[i]));
-    std::memcpy(&out[i], &h, 2);
-  }
+  for (; i < n; ++i) out[i] = nearest_half(bounded(in[i]));
 #endif
 }
 

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
+#include "core/base/decimal.h"
 #include "core/base/text.h"
 #include "core/params/param.h"
 
@@ -24,9 +24,9 @@ std::string not_a_number(std::string_view text) {
 /// The value of the first `n` characters, which number_length has approved.
 std::optional<double> convert(std::string_view text, std::size_t n, std::string& error) {
   std::string_view digits = text.substr(0, n);
-  if (digits.front() == '+') digits.remove_prefix(1);  // from_chars does not accept a plus sign
+  if (digits.front() == '+') digits.remove_prefix(1);  // read_decimal does not accept a plus sign
   double value = 0;
-  const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const auto [end, code] = read_decimal(digits.data(), digits.data() + digits.size(), value);
   if (code == std::errc::result_out_of_range) {
     error = in_quotes(text.substr(0, n)) + " is too large or too small a number";
     return std::nullopt;

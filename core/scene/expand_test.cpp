@@ -3,10 +3,11 @@
 #include "core/scene/expand.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+
+#include "core/base/this_process.h"
 
 namespace insula {
 namespace {
@@ -17,7 +18,7 @@ class Expand : public testing::Test {
   void SetUp() override {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
     folder_ =
-        fs::path(testing::TempDir()) / (std::string("insula_expand_") + info->name() + std::to_string(::getpid()));
+        fs::path(testing::TempDir()) / (std::string("insula_expand_") + info->name() + std::to_string(process_id()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }

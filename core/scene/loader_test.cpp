@@ -3,11 +3,12 @@
 #include "core/scene/loader.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+
+#include "core/base/this_process.h"
 
 namespace insula {
 namespace {
@@ -76,7 +77,7 @@ class Loader : public testing::Test {
  protected:
   void SetUp() override {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(testing::TempDir()) / (std::string("insula_") + info->name() + std::to_string(::getpid()));
+    folder_ = fs::path(testing::TempDir()) / (std::string("insula_") + info->name() + std::to_string(process_id()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }

@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <string>
 
+#include "core/base/decimal.h"
 #include "core/base/diagnostic.h"
 #include "core/base/input_error.h"
 
@@ -34,7 +34,7 @@ struct Reader {
   double number(std::string_view field, std::string_view column) const {
     double value = 0;
     const char* end = field.data() + field.size();
-    const auto [rest, status] = std::from_chars(field.data(), end, value);
+    const auto [rest, status] = read_decimal(field.data(), end, value);
     if (field.empty() || status != std::errc() || rest != end)
       fail(fmt::format("{}: \"{}\" is not a number", column, field.substr(0, 40)));
     if (!std::isfinite(value)) fail(fmt::format("{} must be finite", column));

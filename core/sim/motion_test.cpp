@@ -3,7 +3,6 @@
 #include "core/sim/motion.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "core/base/input_error.h"
+#include "core/base/this_process.h"
 
 namespace insula {
 namespace {
@@ -146,7 +146,7 @@ TEST(Motion, RefusesBadCommands) {
 TEST(Motion, ReadsFilesAndNamesMissingOnes) {
   EXPECT_THROW(load_motion("/nowhere/at_all.csv"), InputError);
   EXPECT_THROW(load_motion("/"), InputError);
-  const auto file = std::filesystem::temp_directory_path() / ("insula_motion_" + std::to_string(::getpid()) + ".csv");
+  const auto file = std::filesystem::temp_directory_path() / ("insula_motion_" + std::to_string(process_id()) + ".csv");
   std::ofstream(file) << head << "0,left,0.01,0.02,0.03,1,0,0,0,0,0\n";
   EXPECT_EQ(load_motion(file).at(0, 0).pose.p, Vec3(0.01, 0.02, 0.03));
   std::filesystem::remove(file);

@@ -4,10 +4,11 @@
 
 #include <fmt/format.h>
 
-#include <unistd.h>
 #include <atomic>
 #include <fstream>
 #include <stdexcept>
+
+#include "core/base/this_process.h"
 
 namespace insula::test {
 
@@ -70,7 +71,7 @@ std::string obj_text(const TriMesh& mesh) {
 
 SceneFolder::SceneFolder() {
   static std::atomic<int> count{0};
-  path_ = std::filesystem::temp_directory_path() / fmt::format("insula_scene_{}_{}", ::getpid(), count++);
+  path_ = std::filesystem::temp_directory_path() / fmt::format("insula_scene_{}_{}", process_id(), count++);
   std::filesystem::create_directories(path_ / "meshes");
 }
 

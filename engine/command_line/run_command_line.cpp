@@ -3,15 +3,29 @@
 
 #include <algorithm>
 #include <iostream>
+#include <string>
 
 #include "core/params/option.h"
 #include "core/registry/registry.h"
 #include "engine/command_line/load_plugins.h"
 
 namespace insula {
+namespace {
+
+/// What a report of a fault should name: the version, and what a shared plugin must have been built with.
+std::string version_text() {
+  return std::string("insula " INSULA_VERSION
+                     ", a simulator for training in aneurysm surgery\n"
+                     "For training only, never for the care of patients. GPL-3.0-or-later, without warranty.\n"
+                     "Shared plugins must be built for: ") +
+         abi_string();
+}
+
+}  // namespace
 
 CommandLine::CommandLine(const std::string& description, const std::string& name) : app(description, name) {
   app.require_subcommand(1);
+  app.set_version_flag("--version", version_text(), "what this program is, and what shared plugins must be built for");
   app.add_option("--plugin-path", plugin_paths, "folder of shared plugins, or one plugin (may be given more than once)")
       ->allow_extra_args(false);
 }

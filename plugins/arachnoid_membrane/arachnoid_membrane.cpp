@@ -128,7 +128,7 @@ void ArachnoidMembrane::find_edge(const Piece& piece, const BilinearPatch& patch
   bool known = false;  // the foot of the point before
   BilinearPatch::Foot before;
   Vec3 at_before = Vec3::Zero();
-  const auto take = [&](const Vec3& at, const BilinearPatch::Foot& foot) {
+  const auto take = [&, from = from, to = to](const Vec3& at, const BilinearPatch::Foot& foot) {
     if (foot.s < from || foot.s > to || foot.t < 0 || foot.t > 1 || std::abs(foot.height) > best) return;
     best = std::abs(foot.height);
     tent.edge = true;

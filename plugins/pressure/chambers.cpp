@@ -187,7 +187,7 @@ void Chambers::bind(const BlockMatrix& a, const std::vector<int>& free_of_node) 
     if (column < 0 || row < column || back == edges.end()) continue;
     const int slot = a.find_slot(row, column);
     if (slot < 0) continue;
-    const auto apex = [&](int t) {
+    const auto apex = [&, from = from, to = to](int t) {
       const auto& v = triangles_[std::size_t(t)];
       return v[0] + v[1] + v[2] - from - to;
     };

@@ -106,7 +106,7 @@ struct VesselBench {
       Aabb box;
       box.add(places_[std::size_t(a)]);
       box.add(places_[std::size_t(b)]);
-      m.tree().overlapping(box, [&](int tri) {
+      m.tree().overlapping(box, [&, a = a, b = b](int tri) {
         const auto& t = m.triangle(tri);
         for (int v : t)
           if (v == a || v == b) return;

@@ -150,6 +150,11 @@ FORMS = (
         "makes that surface",
     ),
     Elsewhere(r"cd build/release && cpack -G DEB", "install_packages", "makes the packages and looks into them"),
+    Elsewhere(
+        r"\./insula apt-repository .*",
+        "install_apt_repository",
+        "makes a repository of small packages, and apt reads it",
+    ),
     Elsewhere(r"cmake --install build/release .*", "install_plugins", "installs into a folder of its own"),
     Elsewhere(
         r"(cmake -S|cmake --build|ctest --test-dir|sudo cmake --install) pia_membrane.*",

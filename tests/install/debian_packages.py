@@ -34,6 +34,8 @@ def main():
         "bin/insula",
         "bin/haptic_server",
         "bin/gateway",
+        "share/applications/insula.desktop",
+        "share/icons/hicolor/scalable/apps/insula.svg",
         "share/insula/scenes/training/1_sylvian_fissure.xml",
         "share/insula/curricula/residency_year.xml",
         "share/insula/docs/README.md",
@@ -44,6 +46,10 @@ def main():
     ):
         that((root / "usr" / name).exists(), "usr/%s is in no package" % name)
     insula = root / "usr/bin/insula"
+    version = run("dpkg-deb", "-f", packages["insula"], "Version").strip()
+    that("insula %s, " % version in run(insula, "--version"), "insula --version does not say " + version)
+    if shutil.which("desktop-file-validate"):
+        run("desktop-file-validate", root / "usr/share/applications/insula.desktop")
     run(insula, "check", root / "usr/share/insula/plugins/clip/example.xml")
     run(insula, "new-plugin", "stay", "--kind", "constraint", cwd=work)
     run(cmake, "-S", work / "stay", "-B", work / "stay/build", "-G", "Ninja", "-DCMAKE_PREFIX_PATH=%s" % (root / "usr"))

@@ -17,6 +17,7 @@ FOLDERS = {
     "core/bus": {"core"},
     "core/haptics": {"core", "core/bus"},
     "core/testing": {"core", "core/bus", "plugins"},
+    "platform": {"core", "core/bus", "core/testing"},
     "plugins": {"core"},
     "haptic_server": {"core", "core/bus", "core/haptics"},
     "training/store": {"core"},

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <fstream>
 
+#include "core/base/decimal.h"
 #include "core/base/text.h"
 
 namespace insula {
@@ -36,10 +37,10 @@ std::string lower_extension(const std::filesystem::path& file) {
 
 bool parse_double(std::string_view word, double& value) {
   if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
-  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const auto [end, code] = read_decimal(word.data(), word.data() + word.size(), value);
   if (code == std::errc::result_out_of_range && end == word.data() + word.size()) {
-    // from_chars does not change the value then. Too small a number counts as 0. Too large a number is refused later as
-    // not finite.
+    // read_decimal does not change the value then. Too small a number counts as 0. Too large a number is refused later
+    // as not finite.
     const bool tiny = word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos;
     value = tiny ? 0.0 : std::numeric_limits<double>::infinity();
     return true;

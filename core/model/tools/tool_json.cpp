@@ -35,7 +35,9 @@ void read_blade(const std::filesystem::path& file, const Json& blade, ToolModel&
 /// {"piece": radius, ...}: the hull of that piece is the core of a rounded one.
 void read_rounding(const std::filesystem::path& file, const Json& rounding, ToolModel& tool) {
   if (!rounding.is_object()) fail(file, "rounding_mm must be an object");
-  for (const auto& [name, value] : rounding.items()) {
+  for (const auto& entry : rounding.items()) {
+    const std::string& name = entry.key();
+    const Json& value = entry.value();
     const auto piece =
         std::find_if(tool.pieces.begin(), tool.pieces.end(), [&](const ConvexPiece& p) { return p.name == name; });
     if (piece == tool.pieces.end())

@@ -4,12 +4,15 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace insula {
 namespace {
@@ -26,7 +29,11 @@ void on_signal(int signal) {
 
 }  // namespace
 
-SignalPipe::SignalPipe(std::initializer_list<int> signals) {
+struct SignalPipe::Before {
+  std::vector<std::pair<int, struct sigaction>> handlers;
+};
+
+SignalPipe::SignalPipe(std::initializer_list<int> signals) : before_(std::make_unique<Before>()) {
   if (write_end.load() >= 0) throw std::logic_error("a second SignalPipe");
   if (pipe2(ends_, O_CLOEXEC | O_NONBLOCK) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
   write_end = ends_[1];
@@ -36,12 +43,12 @@ SignalPipe::SignalPipe(std::initializer_list<int> signals) {
     action.sa_handler = on_signal;
     action.sa_flags = SA_RESTART;
     sigaction(signal, &action, &previous);
-    before_.emplace_back(signal, previous);
+    before_->handlers.emplace_back(signal, previous);
   }
 }
 
 SignalPipe::~SignalPipe() {
-  for (const auto& [signal, previous] : before_) sigaction(signal, &previous, nullptr);
+  for (const auto& [signal, previous] : before_->handlers) sigaction(signal, &previous, nullptr);
   write_end = -1;
   close(ends_[0]);
   close(ends_[1]);

@@ -3,6 +3,7 @@
 #include "core/base/signal_pipe.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <stdexcept>
 #include <thread>
