@@ -114,7 +114,7 @@ class Store:
 
 def repeat(plan: Plan, run: str) -> str:
     """The command that repeats a run alone."""
-    return "insula study %s --run %s" % (shlex.quote(str(plan.study.file)), run)
+    return "insula study %s --run %s" % (shlex.quote(str(plan.study.file.resolve())), run)
 
 
 def write_failures(store: Store, plan: Plan, rows: list[Row]) -> list[Row]:
