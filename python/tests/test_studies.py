@@ -21,7 +21,7 @@ WRONG = """<study title="Wrong">
   <vary of="blok.mass_damping" values="1, 2"/>
   <vary variable="youn" values="1 kPa, 2 kPa" count="3"/>
   <vary name="pair"><point value="a"/></vary>
-  <sed count="3"/>
+  <seedz count="3"/>
   <seeds count="0" form="1"/>
   <run duration="3" time_limit="0 s"/>
   <body id="block" value="displcement"/>
@@ -46,7 +46,7 @@ def test_everything_wrong_is_told_at_once(tmp_path):
         (5, '"count" may not stand beside "values"'),
         (5, 'no variable "youn"; did you mean "young"?'),
         (6, "<point> sets nothing"),
-        (7, "unknown element <sed>; did you mean <seeds>?"),
+        (7, "unknown element <seedz>; did you mean <seeds>?"),
         (8, "0 is too small: at least 1"),
         (8, 'no attribute "form"; did you mean "from"?'),
         (9, '"3" has no unit'),
@@ -90,13 +90,14 @@ def test_a_file_that_is_missing_or_no_study(tmp_path):
 
 
 def test_changes_have_the_bits_of_a_changed_scene():
-    other = load_block(BLOCK.replace("2 kPa", "3 kPa"))
-    changed = load_block(changes={"block.corotational_fem.young": "3 kPa"})
-    plain = load_block()
-    for s in (other, changed, plain):
-        s.command("message", "")  # nothing moves by itself: both begin from the same state
+    heavy = BLOCK.replace('title="Block"', 'title="Block" gravity="0 0 -5 m/s2"')
+    other = load_block(heavy.replace("2 kPa", "3 kPa"))
+    changed = load_block(heavy, changes={"block.corotational_fem.young": "3 kPa"})
+    also = load_block(BLOCK, changes={"block.corotational_fem.young": "3 kPa", "scene.gravity": "0 0 -5 m/s2"})
+    plain = load_block(heavy)
+    for s in (other, changed, also, plain):
         s.step(5)
-    assert other.energy == changed.energy
+    assert other.state_hash == changed.state_hash == also.state_hash != plain.state_hash
     assert changed.scene_hash not in (plain.scene_hash, other.scene_hash)
     assert insula.load("clipping", changes={"$artery_case": "narrow_neck"}).scene_hash
     with pytest.raises(insula.SceneError, match="did you mean \"block\""):

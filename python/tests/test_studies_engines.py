@@ -81,6 +81,7 @@ def test_a_killed_study_goes_on(tmp_path):
     process = start(file, "--out", out, "--workers", 2)
     until(lambda: len(st.rows(out)) >= 4, process)
     workers = st.children(process.pid)
+    process.send_signal(signal.SIGSTOP)
     busy = st.run(file, "--out", out)
     assert busy.returncode == 1 and "another study is at work" in busy.stderr
     process.kill()

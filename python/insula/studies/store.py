@@ -29,14 +29,12 @@ class InUse(RuntimeError):
 
 
 def write_whole(file: pathlib.Path, data: bytes) -> None:
-    """All of it or nothing, whatever happens meanwhile."""
+    """All of it or nothing, whatever happens to this process meanwhile."""
     file.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(dir=file.parent, prefix=".", suffix=".part")
     try:
         with os.fdopen(handle, "wb") as out:
             out.write(data)
-            out.flush()
-            os.fsync(out.fileno())
         os.chmod(name, 0o644)
         os.replace(name, file)
     except BaseException:

@@ -25,4 +25,4 @@ class EngineError(RuntimeError):
 
 
 def died(attempts: int, how: str) -> str:
-    return "the worker %s in each of %d attempts" % (how, attempts)
+    return "the worker %s%s" % (how, " in each of %d attempts" % attempts if attempts > 1 else "")

@@ -32,9 +32,11 @@ def environment() -> dict[str, str]:
 
 @dataclasses.dataclass
 class _Worker:
+    """runs: the one that it is at, and one more, so that it does not wait for this process."""
+
     process: subprocess.Popen[bytes]
     pipe: multiprocessing.connection.Connection
-    run: RunSpec | None = None
+    runs: collections.deque[RunSpec] = dataclasses.field(default_factory=collections.deque)
     deadline: float = 0.0
 
     @staticmethod
@@ -50,19 +52,33 @@ class _Worker:
         return _Worker(process, ours)
 
     def give(self, run: RunSpec, limit: float) -> None:
-        self.run, self.deadline = run, time.monotonic() + limit + GRACE
+        if not self.runs:
+            self.deadline = time.monotonic() + limit + GRACE
+        self.runs.append(run)
         try:
             self.pipe.send(run)
         except OSError:
             pass
 
+    def hear(self, limit: float) -> running.Row | None:
+        """The row of the run that it was at; None if it has died."""
+        try:
+            row = self.pipe.recv()
+        except (EOFError, OSError):
+            return None
+        self.runs.popleft()
+        self.deadline = time.monotonic() + limit + GRACE
+        return row
+
+    def is_late(self) -> bool:
+        return bool(self.runs) and time.monotonic() > self.deadline
+
     def end(self) -> str:
         """Kills it. Returns how it has ended."""
-        if self.process.poll() is None and time.monotonic() > self.deadline > 0:
-            how = "did not answer"
-        else:
+        how = "did not answer"
+        if not self.is_late():
             try:
-                code = self.process.wait(1)
+                code = self.process.wait(1 if self.runs else 0)
                 how = "was ended by " + signal.Signals(-code).name if code < 0 else "ended with status %d" % code
             except subprocess.TimeoutExpired:
                 how = "was lost"
@@ -75,44 +91,43 @@ class _Worker:
 class LocalEngine:
     def __init__(self, workers: int):
         self.workers = workers
-        self._attempts: dict[str, int] = collections.defaultdict(int)
+        self._lost: dict[str, int] = collections.defaultdict(int)
 
     def run(self, study: Study, runs: list[RunSpec], record: Record) -> None:
         waiting = collections.deque(runs)
         workers: list[_Worker] = []
         try:
-            while waiting or any(w.run for w in workers):
+            while waiting or any(w.runs for w in workers):
                 while len(workers) < min(self.workers, len(waiting) + len(workers)):
                     workers.append(_Worker.start(study))
-                for w in workers:
-                    if w.run is None and waiting:
-                        self._attempts[waiting[0].id] += 1
-                        w.give(waiting.popleft(), study.time_limit)
+                self._give(study, workers, waiting)
                 self._hear(study, workers, waiting, record)
         finally:
             for w in workers:
+                w.runs.clear()
+                w.process.kill()
                 w.end()
 
+    def _give(self, study: Study, workers: list[_Worker], waiting: collections.deque[RunSpec]) -> None:
+        """A second run only while there is one for each worker: the last runs go to whoever is free."""
+        for ahead in range(2):
+            for w in workers:
+                if len(w.runs) == ahead and len(waiting) > (len(workers) if ahead else 0):
+                    w.give(waiting.popleft(), study.time_limit)
+
     def _hear(self, study: Study, workers: list[_Worker], waiting: collections.deque[RunSpec], record: Record) -> None:
-        busy = {w.pipe: w for w in workers if w.run}
-        ready = multiprocessing.connection.wait(list(busy), timeout=1.0)
-        late = [w for w in busy.values() if time.monotonic() > w.deadline]
-        for w in [busy[p] for p in ready] + late:  # type: ignore[index]
-            run, w_row = w.run, None
-            if run is None:
-                continue  # it has answered at the last moment
-            if w not in late:
-                try:
-                    w_row = w.pipe.recv()
-                except (EOFError, OSError):
-                    pass
-            w.run = None
-            if w_row is not None:
-                record(w_row)
+        ready = multiprocessing.connection.wait([w.pipe for w in workers if w.runs], timeout=1.0)
+        for w in [w for w in workers if w.pipe in ready or w.is_late()]:
+            row = w.hear(study.time_limit) if w.pipe in ready else None
+            if row is not None:
+                record(row)
                 continue
             workers.remove(w)
-            how = w.end()
-            if self._attempts[run.id] < ATTEMPTS and w not in late:
+            late, how = w.is_late(), w.end()
+            run, *others = w.runs
+            waiting.extendleft(reversed(others))
+            self._lost[run.id] += 1
+            if self._lost[run.id] < ATTEMPTS and not late:
                 waiting.appendleft(run)
             else:
-                record(running.failed(study, run, died(self._attempts[run.id], how)))
+                record(running.failed(study, run, died(self._lost[run.id], how)))
