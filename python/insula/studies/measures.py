@@ -46,6 +46,11 @@ def von_mises(stress: np.ndarray) -> np.ndarray:
     return np.sqrt(1.5 * np.einsum("ijk,ijk->i", deviator, deviator))
 
 
+def _of_channel(simulation: _core.Simulation, name: str, index: int) -> Callable[[], float]:
+    view = simulation.channels.view(name)
+    return lambda: float(view[index])
+
+
 def _of_body(body: _core.Body, what: str) -> Callable[[], float]:
     if what == "energy":
         return lambda: float(body.energy)
@@ -65,8 +70,7 @@ class Measuring:
         self.statistics: dict[str, _Statistic] = {}
         for m in measures:
             if m.kind == "channel":
-                view = simulation.channels.view(m.id)
-                self.statistics[m.column] = _Statistic(lambda view=view, k=m.index: float(view[k]), m.statistic)
+                self.statistics[m.column] = _Statistic(_of_channel(simulation, m.id, m.index), m.statistic)
             if m.kind == "body":
                 self.statistics[m.column] = _Statistic(_of_body(simulation.body(m.id), m.what), m.statistic)
         sound = any(m.kind == "soundness" for m in measures)
@@ -85,7 +89,7 @@ class Measuring:
 
     def values(self) -> dict[str, Value]:
         """By column."""
-        s, out = self.simulation, {}  # type: ignore[var-annotated]
+        s, out = self.simulation, dict[str, Value]()
         kinds = {m.kind for m in self.measures}
         goals = {g.id: g.done for g in s.goals} if "goal" in kinds else {}
         faults = {f.id: f.count for f in s.faults} if "fault" in kinds else {}

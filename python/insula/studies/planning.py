@@ -36,7 +36,7 @@ def _motion_hashes(study: Study) -> list[str]:
 
 def make(study: Study, hashes: dict[tuple[int, tuple[int, ...]], int], units: dict[str, str]) -> Plan:
     """All runs: scenes, axes and rates change slowest, so that a worker seldom loads another scene."""
-    first, runs = (0,) * len(study.axes), []
+    first, runs = (0,) * len(study.axes), list[RunSpec]()
     motions = _motion_hashes(study)
     measured = [dataclasses.replace(m, place=(0, 0)) for m in study.measures]
     common = _hash(_core.version, study.duration, study.until_end, study.hands, [str(m) for m in measured])

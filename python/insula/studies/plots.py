@@ -107,7 +107,7 @@ def _histogram(axes: Any, plan: Plan, plot: Plot, rows: list[Row]) -> None:
 
 def draw(plan: Plan, rows: list[Row], folder: pathlib.Path) -> list[pathlib.Path]:
     """The pictures that the study asks for, of the runs that are done."""
-    done, out = [r for r in rows if r["status"] == "done"], []
+    done, out = [r for r in rows if r["status"] == "done"], list[pathlib.Path]()
     if not plan.study.plots or not done:
         return out
     pyplot = _pyplot()

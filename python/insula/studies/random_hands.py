@@ -43,7 +43,8 @@ class _Strokes:
     def stroke(self, position: np.ndarray, orientation: np.ndarray, speed: float) -> None:
         way, start = position - self.position, self.position
         turn, first = rotation_vector(multiply(orientation, conjugate(self.orientation))), self.orientation
-        seconds = max(15 / 8 * np.linalg.norm(way) / speed, 15 / 8 * np.linalg.norm(turn) / SPIN, 0.02)
+        length, angle = float(np.linalg.norm(way)), float(np.linalg.norm(turn))
+        seconds = max(15 / 8 * length / speed, 15 / 8 * angle / SPIN, 0.02)
         keys = max(2, math.ceil(seconds / KEY))
         for k in range(1, keys + 1):
             x = k / keys
@@ -61,10 +62,6 @@ def _direction(draw: random.Random) -> np.ndarray:
 
 def _between(draw: random.Random, low: float, high: float) -> float:
     return low + (high - low) * draw.random()
-
-
-def _one_of(draw: random.Random, items: list[str]) -> str:
-    return items[int(draw.random() * len(items))]
 
 
 def _commands(simulation: _core.Simulation, hand: str) -> list[tuple[str, str]]:
@@ -109,7 +106,7 @@ def random_motion(simulation: _core.Simulation, seed: int, settings: RandomHands
         last[hand], end = w, max(end, w.time)
         possible, time = _commands(simulation, hand), 0.02
         while possible and time < settings.busy:
-            motion.add_command(time, *_one_of(draw, possible))
+            motion.add_command(time, *possible[int(draw.random() * len(possible))])
             time += _between(draw, 0.2, 1.5)
     for w in last.values():
         w.hold(end + settings.rest - w.time)

@@ -35,11 +35,13 @@ class Soundness:
     def __init__(self, simulation: _core.Simulation):
         self.simulation = simulation
         self.inverted_ever = 0
-        self.solids, self.walls = [], []
+        self.solids: list[tuple[_core.Body, np.ndarray, np.ndarray]] = []  # elements, and their size at rest
+        self.walls: list[tuple[_core.Body, np.ndarray, np.ndarray]] = []
         for body in simulation.bodies:
-            if body.deformable and len(body.elements):
-                kind, size = (self.solids, volumes) if body.elements.shape[1] == 4 else (self.walls, areas)
-                kind.append((body, np.array(body.elements), size(body.rest, body.elements)))
+            elements = np.array(body.elements) if body.deformable else np.zeros((0, 3), int)
+            if len(elements):
+                kind, size = (self.solids, volumes) if elements.shape[1] == 4 else (self.walls, areas)
+                kind.append((body, elements, size(body.rest, elements)))
 
     def _relative(self, kind: list, size) -> np.ndarray:
         parts = [size(body.positions, elements) / rest for body, elements, rest in kind]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import pathlib
 from typing import Any
@@ -18,11 +19,10 @@ LAST = ("simulated", "steps", "wall", "cpu", "state_hash", "scene_hash", "versio
 
 def _pyarrow() -> Any:
     try:
-        import pyarrow
-        import pyarrow.parquet
+        importlib.import_module("pyarrow.parquet")
     except ImportError:
         raise RuntimeError(NEEDED) from None
-    return pyarrow
+    return importlib.import_module("pyarrow")
 
 
 def column_names(rows: list[Row]) -> list[str]:

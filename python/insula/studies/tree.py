@@ -159,4 +159,4 @@ def read_tree(file: pathlib.Path, problems: Problems) -> Node | None:
         return None
     raw, found = _core.read_xml(text, str(file))
     problems.found += found
-    return _node(raw, "", problems) if raw else None
+    return _node(raw, "", problems) if isinstance(raw, tuple) else None

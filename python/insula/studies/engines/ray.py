@@ -6,6 +6,7 @@ package and the files of the scenes at the same paths.
 from __future__ import annotations
 
 import collections
+import importlib
 from typing import Any
 
 from insula.studies import running
@@ -16,10 +17,9 @@ from insula.studies.study import RunSpec, Study
 
 def _ray() -> Any:
     try:
-        import ray
+        return importlib.import_module("ray")
     except ImportError:
         raise EngineError("the engine ray needs Ray: pip install \"insula[ray]\"") from None
-    return ray
 
 
 class RayEngine:
