@@ -20,20 +20,26 @@ import sys
 beside, words = sys.argv[1], sys.argv[2:]
 sys.path[0] = beside
 try:
-    import insula
+    from insula.studies.command import main
 except ImportError as error:
     sys.exit(f"error: {error}: insula study needs the Python package (pip install insula-*.whl, docs/python.md); "
              "INSULA_PYTHON names the Python that has it")
-from insula.studies.command import main
 sys.exit(main(words))
 )";
 
+/// INSULA_PYTHON, that of the source tree in which the program was built, or the first one in PATH.
+std::string python_of(const std::filesystem::path& release) {
+  if (const char* python = std::getenv("INSULA_PYTHON"); python && *python) return python;
+  const std::filesystem::path own = release.parent_path() / "python-env/bin/python";
+  std::error_code error;
+  return std::filesystem::exists(own, error) ? own.string() : "python3";
+}
+
 /// Replaces this process. Returns only if that fails.
 int run_study(const std::vector<std::string>& words, std::ostream& err) {
-  const char* python = std::getenv("INSULA_PYTHON");
-  std::vector<std::string> command{"/usr/bin/env", python && *python ? python : "python3",
-                                   "-B",           "-c",
-                                   program,        (own_program().parent_path().parent_path() / "python").string()};
+  const std::filesystem::path release = own_program().parent_path().parent_path();
+  std::vector<std::string> command{"/usr/bin/env", python_of(release), "-B", "-c", program};
+  command.push_back((release / "python").string());
   command.insert(command.end(), words.begin(), words.end());
   std::vector<char*> pointers;
   for (std::string& word : command) pointers.push_back(word.data());

@@ -90,7 +90,7 @@ def check_plots(study: Study, problems: Problems) -> None:
             problems.add(a.place, 'the axis "%s" has the name of another column' % a.name)
     for p in study.plots:
         places = dict(p.places)
-        for which, column in (("x", p.x), ("y", p.y), ("by", p.by)):
+        for which, column in (("x", p.x), ("y", p.y), ("group", p.group)):
             if column and column not in names:
                 problems.add(places[which], '%s: no column "%s"%s' % (which, column, did_you_mean(column, names)))
 

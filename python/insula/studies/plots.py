@@ -60,14 +60,14 @@ def means(rows: list[Row], x: str, y: str) -> tuple[list[object], list[float], l
 
 
 def _line(axes: Any, plan: Plan, plot: Plot, rows: list[Row]) -> None:
-    groups = _order([r.get(plot.by) for r in rows]) if plot.by else [None]
+    groups = _order([r.get(plot.group) for r in rows]) if plot.group else [None]
     places = _order([r[plot.x] for r in rows if r.get(plot.x) is not None])
     numeric = all(isinstance(p, (int, float)) for p in places)
     share = all(isinstance(r.get(plot.y), bool) for r in rows if r.get(plot.y) is not None)
     for k, group in enumerate(groups):
-        mine = [r for r in rows if not plot.by or r.get(plot.by) == group]
+        mine = [r for r in rows if not plot.group or r.get(plot.group) == group]
         at, mean, _ = means(mine, plot.x, plot.y)
-        label = "%s %s" % (_text(group), plan.units.get(plot.by, "")) if plot.by else None
+        label = "%s %s" % (_text(group), plan.units.get(plot.group, "")) if plot.group else None
         xs = [float(p) if numeric else places.index(p) for p in at]  # type: ignore[arg-type]
         (drawn,) = axes.plot(xs, mean, marker="o", markersize=4, color="C%d" % (k % 10), label=label)
         if not share:
@@ -77,16 +77,16 @@ def _line(axes: Any, plan: Plan, plot: Plot, rows: list[Row]) -> None:
         axes.set_xticks(range(len(places)), [_text(p) for p in places])
     if share:
         axes.set_ylim(-0.05, 1.05)
-    if plot.by:
-        axes.legend(title=plot.by, frameon=False)
+    if plot.group:
+        axes.legend(title=plot.group, frameon=False)
     axes.set_ylabel(plot.label or ("share with " if share else "") + _named(plan, plot.y))
 
 
 def _map(figure: Any, axes: Any, plan: Plan, plot: Plot, rows: list[Row]) -> None:
-    xs, ys = (_order([r[c] for r in rows if r.get(c) is not None]) for c in (plot.x, plot.by))
+    xs, ys = (_order([r[c] for r in rows if r.get(c) is not None]) for c in (plot.x, plot.group))
     grid = np.full((len(ys), len(xs)), np.nan)
     for j, y in enumerate(ys):
-        at, mean, _ = means([r for r in rows if r.get(plot.by) == y], plot.x, plot.y)
+        at, mean, _ = means([r for r in rows if r.get(plot.group) == y], plot.x, plot.y)
         for place, value in zip(at, mean):
             grid[j, xs.index(place)] = value
     picture = axes.imshow(grid, origin="lower", aspect="auto", cmap="viridis")
@@ -95,7 +95,7 @@ def _map(figure: Any, axes: Any, plan: Plan, plot: Plot, rows: list[Row]) -> Non
                   color="white" if picture.norm(grid[j, i]) < 0.6 else "black")
     axes.set_xticks(range(len(xs)), [_text(x) for x in xs])
     axes.set_yticks(range(len(ys)), [_text(y) for y in ys])
-    axes.set_ylabel(_named(plan, plot.by))
+    axes.set_ylabel(_named(plan, plot.group))
     figure.colorbar(picture, label=plot.label or _named(plan, plot.y))
 
 

@@ -148,12 +148,12 @@ def _plot(node: Node, problems: Problems) -> Plot:
     file = node.text("file")
     if file and (os.path.basename(file) != file or not file.endswith((".svg", ".png", ".pdf"))):
         problems.add(node.at("file"), 'file: "%s" must be a plain name that ends in .svg, .png or .pdf' % file)
-    texts = {n: node.text(n) for n in ("x", "y", "by", "kind", "scale", "label")}
+    texts = {n: node.text(n) for n in ("x", "y", "group", "kind", "scale", "label")}
     if (texts["kind"] == "histogram") == bool(texts["y"]):
         problems.add(node.place, '<plot> needs "y", except for a histogram, which counts x alone')
-    if texts["kind"] == "map" and not texts["by"]:
-        problems.add(node.place, 'a map needs "by", the column of its vertical axis')
-    return Plot(file=file, **texts, places=tuple((n, node.at(n)) for n in ("file", "x", "y", "by")))
+    if texts["kind"] == "map" and not texts["group"]:
+        problems.add(node.place, 'a map needs "group", the column of its vertical axis')
+    return Plot(file=file, **texts, places=tuple((n, node.at(n)) for n in ("file", "x", "y", "group")))
 
 
 def _twice(names: list[tuple[str, tuple[int, int]]], what: str, problems: Problems) -> None:

@@ -87,7 +87,7 @@ class Plot:
     file: str
     x: str
     y: str
-    by: str = ""
+    group: str = ""
     kind: str = "line"
     scale: str = "linear"
     label: str = ""
