@@ -89,7 +89,9 @@ def _map(figure: Any, axes: Any, plan: Plan, plot: Plot, rows: list[Row]) -> Non
         at, mean, _ = means([r for r in rows if r.get(plot.group) == y], plot.x, plot.y)
         for place, value in zip(at, mean):
             grid[j, xs.index(place)] = value
-    picture = axes.imshow(grid, origin="lower", aspect="auto", cmap="viridis")
+    share = all(isinstance(r.get(plot.y), bool) for r in rows if r.get(plot.y) is not None)
+    ends = {"vmin": 0, "vmax": 1} if share else {}
+    picture = axes.imshow(grid, origin="lower", aspect="auto", cmap="viridis", **ends)
     for j, i in np.argwhere(np.isfinite(grid)):
         axes.text(i, j, "%.3g" % grid[j, i], ha="center", va="center", fontsize=7,
                   color="white" if picture.norm(grid[j, i]) < 0.6 else "black")
