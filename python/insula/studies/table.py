@@ -20,9 +20,9 @@ LAST = ("simulated", "steps", "wall", "cpu", "state_hash", "scene_hash", "versio
 def _pyarrow() -> Any:
     try:
         importlib.import_module("pyarrow.parquet")
+        return importlib.import_module("pyarrow")
     except ImportError:
         raise RuntimeError(NEEDED) from None
-    return importlib.import_module("pyarrow")
 
 
 def column_names(rows: list[Row]) -> list[str]:
