@@ -9,7 +9,7 @@ set(config lib/cmake/Insula)
 # --- programs and data -----------------------------------------------------------------------------------------------
 install(TARGETS insula EXPORT InsulaTargets RUNTIME DESTINATION bin COMPONENT insula)
 install(TARGETS insula_workbench haptic_server gateway RUNTIME DESTINATION bin COMPONENT insula)
-install(DIRECTORY scenes curricula meshes DESTINATION ${share} COMPONENT insula PATTERN "*.py" EXCLUDE)
+install(DIRECTORY scenes curricula meshes studies DESTINATION ${share} COMPONENT insula PATTERN "*.py" EXCLUDE)
 install(DIRECTORY plugins DESTINATION ${share} COMPONENT insula FILES_MATCHING PATTERN "*.xml")
 install(DIRECTORY docs DESTINATION ${share} COMPONENT insula)
 install(FILES LICENSE README.md DESTINATION ${share} COMPONENT insula)

@@ -17,6 +17,7 @@
 #include "engine/command_line/run_command_line.h"
 #include "engine/command_line/sessions.h"
 #include "engine/command_line/studio_command.h"
+#include "engine/command_line/study_command.h"
 #include "engine/command_line/tool_program.h"
 #include "training/store/data_folder.h"
 
@@ -302,6 +303,7 @@ void add_commands(Options& c) {
   add_view(c);
   insula::add_room_command(c);
   insula::add_studio_command(c);
+  insula::add_study_command(c);
   add_tool_programs(c);
 }
 

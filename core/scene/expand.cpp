@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/scene/edits.h"
 #include "core/scene/variables.h"
 
 namespace insula {
@@ -30,7 +31,7 @@ class Expander {
   Expander(ExpandedScene& out, Diagnostics& diagnostics)
       : out_(out), diagnostics_(diagnostics), variables_(diagnostics, out.suggestions) {}
 
-  void run(std::string_view text, const fs::path& path) {
+  void run(std::string_view text, const fs::path& path, const std::vector<SceneEdit>& edits) {
     std::error_code ec;
     fs::path canonical = fs::weakly_canonical(path, ec);
     if (ec) canonical = path;
@@ -39,7 +40,11 @@ class Expander {
     if (!out_.root) return;
     stack_.push_back(&part);
     auto& scope = variables_.new_scope(nullptr);
+    Variables::Scope given;
+    for (const SceneEdit& e : edits)
+      if (e.component.empty()) variables_.define(scope, given, e.name, e.value, e.pos, e.pos, true);
     expand_root(*out_.root, part, scope, 0);
+    variables_.refuse_unused(given);
     variables_.warn_unused();
   }
 
@@ -270,11 +275,16 @@ fs::path resolve_file(const fs::path& folder, const fs::path& root, const std::s
   return path;
 }
 
-ExpandedScene expand_scene(std::string_view text, const fs::path& path, Diagnostics& diagnostics) {
+ExpandedScene expand_scene(std::string_view text, const fs::path& path, Diagnostics& diagnostics,
+                           const std::vector<SceneEdit>& edits) {
   ExpandedScene out;
   out.root_folder = scene_root_folder(path);
-  Expander(out, diagnostics).run(text, path);
+  Expander(out, diagnostics).run(text, path, edits);
   return out;
+}
+
+ExpandedScene expand_scene(std::string_view text, const fs::path& path, Diagnostics& diagnostics) {
+  return expand_scene(text, path, diagnostics, {});
 }
 
 }  // namespace insula

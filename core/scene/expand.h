@@ -45,6 +45,11 @@ std::filesystem::path scene_root_folder(const std::filesystem::path& scene_file)
 std::filesystem::path resolve_file(const std::filesystem::path& folder, const std::filesystem::path& root,
                                    const std::string& name, std::string& error, Suggestions& suggestions);
 
+struct SceneEdit;
+
+/// edits: those that name a variable replace it in the whole scene.
+ExpandedScene expand_scene(std::string_view text, const std::filesystem::path& path, Diagnostics& diagnostics,
+                           const std::vector<SceneEdit>& edits);
 ExpandedScene expand_scene(std::string_view text, const std::filesystem::path& path, Diagnostics& diagnostics);
 
 }  // namespace insula

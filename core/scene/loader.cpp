@@ -8,6 +8,7 @@
 #include <exception>
 
 #include "core/scene/builder.h"
+#include "core/scene/edits.h"
 #include "core/scene/expand.h"
 #include "core/scene/first_diagnostics.h"
 #include "core/xml/document.h"
@@ -34,17 +35,19 @@ void take_exercise(ExpandedScene& into, ExpandedScene& from, const std::filesyst
 
 /// rules: scene with the exercise; empty: its own.
 LoadResult load_expanded(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry,
-                         double time_step_s, const std::filesystem::path& rules) {
+                         double time_step_s, const std::filesystem::path& rules,
+                         const std::vector<SceneEdit>& edits = {}) {
   LoadResult result;
   Diagnostics found;
   try {
-    auto tree = expand_scene(text, virtual_path, found);
+    auto tree = expand_scene(text, virtual_path, found, edits);
     if (tree.root && !rules.empty()) {
       std::string other;
       if (const std::string error = read_text_file(rules.string(), DocumentLimits{}.file_bytes, other); !error.empty())
         found.error({rules.generic_string(), 0, 0}, error);
       else if (auto from = expand_scene(other, rules, found); from.root) take_exercise(tree, from, rules, found);
     }
+    apply_edits(tree, edits, found);
     if (tree.root && time_step_s > 0) set_time_step(*tree.root, time_step_s);
     if (tree.root) result.scene = SceneBuilder(registry, tree, found).build(virtual_path);
   } catch (const std::exception& e) {
@@ -55,6 +58,18 @@ LoadResult load_expanded(std::string_view text, const std::filesystem::path& vir
   result.diagnostics = first_diagnostics(std::move(found));
   if (!result.diagnostics.ok()) result.scene.reset();
   return result;
+}
+
+/// False, with the error, if the file cannot be read.
+bool read_scene(const std::filesystem::path& file, std::string& text, LoadResult& result) {
+  std::string error;
+  try {
+    error = read_text_file(file.string(), DocumentLimits{}.file_bytes, text);
+  } catch (const std::exception& e) {
+    error = std::string("cannot be read: ") + e.what();
+  }
+  if (!error.empty()) result.diagnostics.error({file.generic_string(), 0, 0}, error);
+  return error.empty();
 }
 
 }  // namespace
@@ -71,17 +86,17 @@ LoadResult load_scene(const std::filesystem::path& file, const Registry& registr
 LoadResult load_scene_with_exercise_of(const std::filesystem::path& rules, const std::filesystem::path& file,
                                        const Registry& registry, double time_step_s) {
   LoadResult result;
-  try {
-    std::string text;
-    if (const std::string error = read_text_file(file.string(), DocumentLimits{}.file_bytes, text); !error.empty()) {
-      result.diagnostics.error({file.generic_string(), 0, 0}, error);
-      return result;
-    }
-    return load_expanded(text, file, registry, time_step_s, rules);
-  } catch (const std::exception& e) {
-    result.diagnostics.error({file.generic_string(), 0, 0}, std::string("cannot be read: ") + e.what());
-    return result;
-  }
+  std::string text;
+  if (!read_scene(file, text, result)) return result;
+  return load_expanded(text, file, registry, time_step_s, rules);
+}
+
+LoadResult load_scene_edited(std::string_view text, const std::filesystem::path& file, const Registry& registry,
+                             const std::vector<SceneEdit>& edits, double time_step_s) {
+  LoadResult result;
+  std::string read;
+  if (text.empty() && !read_scene(file, read, result)) return result;
+  return load_expanded(text.empty() ? read : text, file, registry, time_step_s, {}, edits);
 }
 
 }  // namespace insula

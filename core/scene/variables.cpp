@@ -115,6 +115,18 @@ bool Variables::replace(std::string& text, const Scope& scope, const SourcePos& 
   return true;
 }
 
+void Variables::refuse_unused(const Scope& given) {
+  for (const auto& [name, d] : given) {
+    if (d->used) continue;
+    d->used = true;
+    std::vector<std::string> names;
+    for (const Definition& other : definitions_)
+      if (!given.contains(other.name)) names.push_back(other.name);
+    diagnostics_.error(d->pos,
+                       "the scene uses no variable " + in_quotes(name) + did_you_mean(nearest_name(name, names)));
+  }
+}
+
 void Variables::warn_unused() {
   for (const auto& d : definitions_)
     if (!d.used) diagnostics_.warning(d.pos, "variable " + in_quotes(d.name) + " is not used");

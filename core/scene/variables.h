@@ -37,6 +37,8 @@ class Variables {
   /// Replaces $x, ${x} and $$. Returns false, with a report, when that fails.
   bool replace(std::string& text, const Scope& scope, const SourcePos& pos);
   void warn_unused();
+  /// Reports those of `given` that nothing uses as errors, with the nearest name.
+  void refuse_unused(const Scope& given);
 
   static bool is_name(std::string_view text);
 

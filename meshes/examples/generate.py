@@ -12,6 +12,7 @@ import pathlib
 import sys
 
 FOLDER = pathlib.Path(__file__).resolve().parent
+BARS = (1, 2, 3, 4, 6)  # cells across the bars of studies/mesh_convergence.xml
 # A cube in six tetrahedra around its diagonal: one for each order of stepping along the axes.
 ORDERS = list(itertools.permutations(range(3)))
 
@@ -100,6 +101,11 @@ def main():
         ("block_upper.msh", (-10, -10, 2), (10, 10, 22)),
     ):
         nodes, tets = block((4, 4, 4), low, high)
+        files[name] = msh(nodes, tets)
+        manifest.append(entry(name, files[name], nodes=len(nodes), tetrahedra=len(tets)))
+    for n in BARS:
+        name = "bar_%d.msh" % n
+        nodes, tets = block((n, n, 4 * n), (-5, -5, 0), (5, 5, 40))
         files[name] = msh(nodes, tets)
         manifest.append(entry(name, files[name], nodes=len(nodes), tetrahedra=len(tets)))
     files["plate.obj"] = plate((-20, -20, -24), (20, 20, -20.2))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from insula import _core, shipped
 
@@ -17,6 +17,22 @@ class SceneError(ValueError):
         self.problems = problems
 
 
+Edit = tuple[str, str, str, str, int, int]
+
+
+def edits(changes: Mapping[str, str], place: tuple[str, int, int] = ("", 0, 0)) -> list[Edit]:
+    """Changes as the module takes them: component, name, value, and the place that messages name."""
+    out = []
+    for key, value in changes.items():
+        component, _, name = key.rpartition(".")
+        if key.startswith("$"):
+            component, name = "", key[1:]
+        elif not component:
+            raise ValueError('"%s" names no parameter: write ID.PARAMETER, or $NAME for a variable' % key)
+        out.append((component, name, value, *place))
+    return out
+
+
 def load(
     scene: str | os.PathLike[str],
     *,
@@ -25,6 +41,7 @@ def load(
     threads: int = 1,
     time_step: float | None = None,
     seed: int | None = None,
+    changes: Mapping[str, str] | None = None,
 ) -> _core.Simulation:
     """Loads a scene and prepares its first step.
 
@@ -34,6 +51,9 @@ def load(
     threads: of a step; 0: as many as the machine has cores. The bits are the same for any number.
     time_step: s, in place of the scene's own.
     seed: what complications are drawn from, in place of the scene's own.
+    changes: values in place of what the scene says: {"heart.systolic": "140 mmHg", "$artery_case": "wide_neck"}. The
+        first part of a key is the id of a component, or ID.ELEMENT for its only child of that element; "$" begins the
+        name of a variable.
 
     Raises SceneError with all problems of the scene, and InputError if a plugin cannot be loaded.
     """
@@ -43,7 +63,7 @@ def load(
     else:
         file = os.fspath(shipped.find(scene))
     folders = [os.fspath(p) for p in plugins]
-    simulation, problems = _core.load(text, file, folders, threads, time_step or 0.0)
+    simulation, problems = _core.load(text, file, folders, threads, time_step or 0.0, edits(changes or {}))
     if simulation is None:
         raise SceneError(problems)
     if seed is not None:

@@ -27,6 +27,7 @@ using namespace nb::literals;
 using RunClass = nb::class_<Run>;
 
 void bind_errors(nb::module_& m);
+void bind_xml(nb::module_& m);
 void bind_load(nb::module_& m, RunClass& run);
 void bind_stepping(nb::module_& m, RunClass& run);
 void bind_hands(nb::module_& m, RunClass& run);

@@ -8,6 +8,12 @@ namespace insula::python {
 void bind_errors(nb::module_& m) {
   nb::exception<InputError>(m, "InputError", PyExc_ValueError);
   nb::class_<Diagnostic>(m, "Problem", "An error or a warning of a scene, with its place.")
+      .def(
+          "__init__",
+          [](Diagnostic* d, std::string message, std::string file, int line, int column) {
+            new (d) Diagnostic{Severity::error, {std::move(file), line, column}, std::move(message)};
+          },
+          "message"_a, "file"_a = "", "line"_a = 0, "column"_a = 0, "An error at a place of a file.")
       .def_prop_ro(
           "severity", [](const Diagnostic& d) { return d.severity == Severity::error ? "error" : "warning"; },
           "\"error\" or \"warning\".")

@@ -23,23 +23,34 @@ void share_own_symbols() {
   if (!shared) throw InputError("this module cannot share its symbols with plugins");
 }
 
-}  // namespace
-
-Loaded load_run(const std::string& text, const std::string& file, const std::vector<std::string>& plugins, int threads,
-                double time_step_s) {
+/// The elements of the program and of the plugins.
+std::unique_ptr<Registry> registry_with(const std::vector<std::string>& plugins) {
   auto registry = std::make_unique<Registry>();
   if (!plugins.empty()) share_own_symbols();
   std::ostringstream wrong;
   if (load_plugins(*registry, {plugins.begin(), plugins.end()}, wrong) != 0) throw InputError(wrong.str());
-  LoadResult scene =
-      text.empty() ? load_scene(file, *registry, time_step_s) : load_scene_text(text, file, *registry, time_step_s);
+  return registry;
+}
+
+}  // namespace
+
+Loaded load_run(const std::string& text, const std::string& file, const LoadOptions& options) {
+  auto registry = registry_with(options.plugins);
+  LoadResult scene = load_scene_edited(text, file, *registry, options.edits, options.time_step_s);
   Loaded out;
   std::unique_ptr<Simulation> simulation;
-  if (scene.scene) simulation = std::make_unique<Simulation>(std::move(scene.scene), scene.diagnostics, threads);
+  if (scene.scene)
+    simulation = std::make_unique<Simulation>(std::move(scene.scene), scene.diagnostics, options.threads);
   out.problems = scene.diagnostics.all();
   if (simulation && scene.diagnostics.ok())
     out.run = std::make_unique<Run>(std::move(registry), std::move(simulation), out.problems);
   return out;
+}
+
+Checked check_scene(const std::string& file, const LoadOptions& options) {
+  const auto registry = registry_with(options.plugins);
+  const LoadResult scene = load_scene_edited("", file, *registry, options.edits, options.time_step_s);
+  return {scene.diagnostics.all(), scene.scene ? scene.scene->content_hash() : 0};
 }
 
 }  // namespace insula::python

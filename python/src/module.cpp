@@ -30,6 +30,7 @@ NB_MODULE(_core, m) {
   m.doc() = "The engine of Insula in this process.";
   m.attr("version") = INSULA_VERSION;
   bind_errors(m);
+  bind_xml(m);
   RunClass run(m, "Simulation", "A loaded scene that can be stepped. Made by insula.load().");
   bind_load(m, run);
   bind_stepping(m, run);

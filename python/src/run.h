@@ -10,6 +10,7 @@
 
 #include "core/base/diagnostic.h"
 #include "core/registry/registry.h"
+#include "core/scene/edits.h"
 #include "core/sim/simulation.h"
 #include "engine/live/headless.h"
 #include "python/src/contact_records.h"
@@ -91,8 +92,20 @@ struct Loaded {
   std::unique_ptr<Run> run;
   std::vector<Diagnostic> problems;
 };
+struct LoadOptions {
+  std::vector<std::string> plugins;
+  int threads = 1;
+  double time_step_s = 0;        ///< 0: the scene's own
+  std::vector<SceneEdit> edits;  ///< in place of what the scene says
+};
 /// text: of the scene; empty: that of the file. Throws InputError if a plugin cannot be loaded.
-Loaded load_run(const std::string& text, const std::string& file, const std::vector<std::string>& plugins, int threads,
-                double time_step_s);
+Loaded load_run(const std::string& text, const std::string& file, const LoadOptions& options);
+
+struct Checked {
+  std::vector<Diagnostic> problems;
+  std::uint64_t hash = 0;  ///< of the scene's files and of the edits; 0 after an error
+};
+/// Reads and checks the scene of a file, without preparing a first step. Throws InputError as load_run() does.
+Checked check_scene(const std::string& file, const LoadOptions& options);
 
 }  // namespace insula::python

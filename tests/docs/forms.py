@@ -214,6 +214,9 @@ FORMS = (
         "bench_training.xml --solvers",
         "the small scene: CHOLMOD takes seconds for each solve of the large one",
     ),
+    Shorter(
+        r"^(\./insula study studies/.*)$", r"\1 --sample 1 --workers 1", "one of the runs, on a coarse mesh", "results:"
+    ),
     Shorter(r"--random 60\b", "--random 4", "fewer probes"),
     Shorter(r"--steps (600|300|30)\b", "--steps 20", "fewer steps"),
     Shorter(

@@ -27,6 +27,8 @@ def scene(runner, block):
             block.line,
             "a part that no scene of the page includes: give it a name (<!-- file: PATH -->)",
         )
+    if block.role == "file" and re.match(r"\s*<study[\s>]", block.text):
+        return None  # a command of its page runs it
     root = re.search(r"<(scene|curriculum)[\s>/]", placed(runner, block))
     if not root:
         return runner.that(False, block.line, "a part of a scene; say what it stands in (<!-- in: PATH -->)")
@@ -71,7 +73,7 @@ def python(runner, block):
     except SyntaxError as e:
         return runner.that(False, block.line, "no Python: %s" % e)
     words = ["python3", "-c", placed(runner, block)]
-    if re.search(r"^import insula$", words[2], re.M):
+    if re.search(r"^(import insula|from insula import .*|import pyarrow\S*)$", words[2], re.M):
         if not list((runner.build / "python/insula").glob("_core*.so")):
             runner.skipped += 1
             return print("the Python package is not built, not run: the Python of line %d" % block.line)

@@ -6,38 +6,13 @@ from __future__ import annotations
 import numpy as np
 
 from insula import Simulation
+from insula.rotations import multiply, rotation
 
 SPEED = 0.05  # m/s at an action of 1
 TURN = 1.5  # rad/s
 LEASH = 0.008  # farthest that the hand is drawn from its tool, m
 REACH = 0.09  # farthest from the middle of the field, m
 ACTIONS = 8  # velocity and turning rate, scene frame, each of three numbers; two buttons, pressed above 0
-
-
-def multiply(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """The product of two quaternions w x y z."""
-    w, v, u, s = a[0], a[1:], b[1:], b[0]
-    return np.concatenate(([w * s - v @ u], w * u + s * v + np.cross(v, u)))
-
-
-def rotation(turn: np.ndarray) -> np.ndarray:
-    """The quaternion of a rotation vector, rad."""
-    angle = float(np.linalg.norm(turn))
-    if angle < 1e-12:
-        return np.array([1.0, 0, 0, 0])
-    return np.concatenate(([np.cos(angle / 2)], np.sin(angle / 2) / angle * turn))
-
-
-def axes(orientation: np.ndarray) -> np.ndarray:
-    """The three columns of a quaternion's rotation matrix, as rows."""
-    w, x, y, z = orientation
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)],
-            [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)],
-            [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
 
 
 class Hand:

@@ -9,7 +9,8 @@ import numpy as np
 
 import insula
 from insula.envs.exercises import EXERCISES, Exercise
-from insula.envs.hands import Hand, axes
+from insula.envs.hands import Hand
+from insula.rotations import axes
 
 FIELD = 0.03  # m: lengths are seen in this unit
 FORCE = 0.1  # N
