@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The command `insula` of an installed package: hands all words to the program."""
+"""The command `insula` of an installed package: hands all words to the program. `insula export` is done here."""
 
 import os
 import pathlib
@@ -7,6 +7,10 @@ import sys
 
 
 def main() -> None:
+    if sys.argv[1:2] == ["export"]:
+        from insula.interchange.__main__ import main as export
+
+        sys.exit(export(sys.argv[2:]))
     program = pathlib.Path(__file__).resolve().parent / "prefix" / "bin" / "insula"
     if not program.exists():
         sys.exit("error: this is no installed package; the program is ./insula of the source tree")
