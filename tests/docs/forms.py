@@ -106,6 +106,11 @@ FORMS = (
         "python_example",
         "makes that environment and runs the examples against an engine and a server",
     ),
+    Elsewhere(
+        r"\./insula export .*\.usdc .*",
+        "python_test_interchange",
+        "writes and reads USD where the package usd-core is installed",
+    ),
     Elsewhere(r"\./insula spy", "spy_window", "opens it on a screen of its own, where Java is"),
     Elsewhere(
         r"lcm-logger .*|build/release/bin/gateway|\./insula replay .*",
@@ -208,6 +213,12 @@ FORMS = (
         r"bench_large\.xml --solvers",
         "bench_training.xml --solvers",
         "the small scene: CHOLMOD takes seconds for each solve of the large one",
+    ),
+    Shorter(
+        r"^(bench/peers/run\.sh)( --json)?$",
+        r"\1\2 --lobe temporal --steps 60 --repeats 1",
+        "a second of one lobe",
+        "MuJoCo",
     ),
     Shorter(r"--random 60\b", "--random 4", "fewer probes"),
     Shorter(r"--steps (600|300|30)\b", "--steps 20", "fewer steps"),
