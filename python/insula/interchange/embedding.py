@@ -6,7 +6,8 @@ A vertex in a tetrahedron moves with its four nodes by barycentric weights. Join
     x = sum_i w_i (X + u_i) = X + sum_i w_i u_i          X: vertex at rest, u_i: displacements of the nodes
 
 So four joints a vertex, as many as glTF allows, are exact inside the mesh. Vertices that lie a little outside have
-weights below 0, which glTF forbids. These are set to 0, and the others are scaled to the sum 1.
+weights below 0, which glTF forbids. These are set to 0, and the others are scaled to the sum 1. A vertex that this
+moves too far from its place gets a joint of its own (`with_own_joints`).
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 SAME = 1e-9  # m: a vertex that is a node
+TRIED = 32  # tetrahedra for each vertex
 CHUNK = 2_000_000  # pairs of vertex and element at a time
 
 
@@ -34,18 +36,24 @@ class Embedding:
 
 
 def _coordinates(points: np.ndarray, rest: np.ndarray, tets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """For each point the tetrahedron it lies in, or least outside of, and its barycentric coordinates there."""
+    """For each point the tetrahedron it lies in, or least outside of, and its barycentric coordinates there. Those with
+    the nearest middles are tried."""
     origin = rest[tets[:, 0]]
     inverse = np.linalg.inv(np.swapaxes(rest[tets[:, 1:]] - origin[:, None], 1, 2))
+    middles, tried = rest[tets].mean(axis=1), min(TRIED, len(tets))
     chosen, coordinates = [], []
     count = max(1, CHUNK // len(tets))
     for first in range(0, len(points), count):
-        away = points[first : first + count, None] - origin
-        last = np.einsum("eij,pej->pei", inverse, away)
+        some = points[first : first + count]
+        # The square of the distance less that of the point, which is the same for all middles.
+        away = (middles * middles).sum(axis=1) - 2 * some @ middles.T
+        near = np.argpartition(away, tried - 1, axis=1)[:, :tried]
+        last = np.einsum("pkij,pkj->pki", inverse[near], some[:, None] - origin[near])
         all_four = np.concatenate([1 - last.sum(axis=2, keepdims=True), last], axis=2)
         best = all_four.min(axis=2).argmax(axis=1)
-        chosen.append(best)
-        coordinates.append(all_four[np.arange(len(best)), best])
+        rows = np.arange(len(best))
+        chosen.append(near[rows, best])
+        coordinates.append(all_four[rows, best])
     return np.concatenate(chosen), np.concatenate(coordinates)
 
 
@@ -54,9 +62,10 @@ def _nearest_node(points: np.ndarray, rest: np.ndarray) -> tuple[np.ndarray, np.
     index, distance = [], []
     count = max(1, CHUNK // len(rest))
     for first in range(0, len(points), count):
-        d = np.linalg.norm(points[first : first + count, None] - rest, axis=2)
-        index.append(d.argmin(axis=1))
-        distance.append(d.min(axis=1))
+        some = points[first : first + count]
+        best = ((rest * rest).sum(axis=1) - 2 * some @ rest.T).argmin(axis=1)
+        index.append(best)
+        distance.append(np.linalg.norm(some - rest[best], axis=1))
     return np.concatenate(index), np.concatenate(distance)
 
 
@@ -94,5 +103,15 @@ def embed(vertices: np.ndarray, rest: np.ndarray, elements: np.ndarray) -> Embed
     weights = np.clip(weights, 0, None)
     weights /= weights.sum(axis=1, keepdims=True)
     nodes[weights == 0] = nodes.min()  # the node of an unused place does not matter
+    joints, indices = np.unique(nodes, return_inverse=True)
+    return Embedding(joints, indices.reshape(nodes.shape), weights)
+
+
+def with_own_joints(hung: Embedding, vertices: np.ndarray, first: int) -> Embedding:
+    """The same with a joint of its own for each of these vertices. Their joints are called `first`, `first` + 1, and so
+    on, after all nodes of the body."""
+    weights, nodes = hung.weights.copy(), hung.joints[hung.indices]
+    nodes[vertices] = (first + np.arange(len(vertices)))[:, None]
+    weights[vertices] = (1.0, 0.0, 0.0, 0.0)
     joints, indices = np.unique(nodes, return_inverse=True)
     return Embedding(joints, indices.reshape(nodes.shape), weights)

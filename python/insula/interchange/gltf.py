@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """glTF 2.0: the posed scene, with skinning and animation.
 
-Each soft body is a skin whose joints are nodes of its tetrahedra (embedding.py). The pose of the joints is the first
+Each soft body is a skin whose joints are nodes of its tetrahedra, and a few vertices (embedding.py). The pose of the joints is the first
 frame. Further frames are an animation of the joints. Tools are nodes with a pose. glTF has y up and Insula's scenes z,
 so one node above all turns the axes. Lengths are metres.
 """
@@ -15,15 +15,15 @@ from typing import Any
 
 import numpy as np
 from insula import __version__
-from insula.interchange.embedding import Embedding, embed
-from insula.interchange.frames import ExportError, Frames, RigidMesh, SoftMesh
+from insula.interchange.embedding import Embedding, embed, with_own_joints
+from insula.interchange.frames import ExportError, Frames, Nodes, RigidMesh, SoftMesh
 from insula.interchange.looks import Look
 from insula.interchange.normals import vertex_normals
 
 FLOAT, USHORT, UINT = 5126, 5123, 5125
 ARRAY, ELEMENTS = 34962, 34963  # targets of buffer views
 Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # quaternion x y z w: a quarter turn about x
-LARGEST_SKIN_ERROR = 0.5e-3  # m: how far a skinned vertex may be from the engine's
+LARGEST_SKIN_ERROR = 0.05e-3  # m: how far a skinned vertex may be from the engine's
 MOST_JOINTS = 65536
 
 
@@ -137,33 +137,39 @@ class SceneWriter:
 
     def check(self, mesh: SoftMesh, hung: Embedding, moved: np.ndarray, rest: np.ndarray) -> None:
         """The skin gives the engine's vertices at every time."""
-        for x, wanted in zip(moved, mesh.positions):
-            error = float(np.linalg.norm(hung.positions(mesh.rest, x - rest) - wanted, axis=1).max())
-            self.skin_error = max(self.skin_error, error)
-            if error > LARGEST_SKIN_ERROR:
-                raise ExportError("surface %s: a vertex lies %.2f mm from its place when it is skinned; write "
-                                  "USD or a VTU series instead" % (mesh.name, 1e3 * error))
+        self.skin_error = max(self.skin_error, float(errors(mesh, hung, moved, rest).max()))
+        if self.skin_error > LARGEST_SKIN_ERROR:
+            raise ExportError("surface %s: a vertex lies %.2f mm from its place when it is skinned" % (
+                mesh.name, 1e3 * self.skin_error))
+
+    def soft_body(self, body: Nodes, meshes: list[SoftMesh]) -> None:
+        moved, rest = np.array(body.positions), body.rest
+        hung = []
+        for mesh in meshes:
+            h = embed(mesh.rest, body.rest, body.elements)
+            far = np.flatnonzero(errors(mesh, h, moved, rest) > LARGEST_SKIN_ERROR)
+            hung.append(with_own_joints(h, far, len(rest)))
+            rest = np.concatenate([rest, mesh.rest[far]])
+            moved = np.concatenate([moved, np.array(mesh.positions)[:, far]], axis=1)
+        joints = np.unique(np.concatenate([h.joints for h in hung]))
+        if len(joints) > MOST_JOINTS:
+            raise ExportError("body %s has %d joints; glTF allows %d" % (body.name, len(joints), MOST_JOINTS))
+        skin = self.skeleton(body.name, moved, rest, joints)
+        for mesh, h in zip(meshes, hung):
+            self.check(mesh, h, moved, rest)
+            places = np.searchsorted(joints, h.joints)[h.indices]
+            places[h.weights == 0] = 0
+            more = {"JOINTS_0": self.out.array(places, USHORT, "VEC4", ARRAY),
+                    "WEIGHTS_0": self.out.array(h.weights, FLOAT, "VEC4", ARRAY)}
+            item = self.out.mesh(mesh.name, mesh.rest, mesh.triangles, mesh.look, more)
+            # The pose of a skinned mesh is that of its joints; its own node stands outside of the turned axes.
+            self.skinned.append(self.out.add("nodes", {"name": mesh.name, "mesh": item, "skin": skin}))
 
     def soft_bodies(self) -> None:
         for body in self.frames.bodies:
             meshes = [m for m in self.frames.soft if m.body == body.name]
-            if not meshes:
-                continue
-            hung = [embed(m.rest, body.rest, body.elements) for m in meshes]
-            joints = np.unique(np.concatenate([h.joints for h in hung]))
-            if len(joints) > MOST_JOINTS:
-                raise ExportError("body %s has %d joints; glTF allows %d" % (body.name, len(joints), MOST_JOINTS))
-            moved = np.array(body.positions)
-            skin = self.skeleton(body.name, moved, body.rest, joints)
-            for mesh, h in zip(meshes, hung):
-                self.check(mesh, h, moved, body.rest)
-                places = np.searchsorted(joints, h.joints)[h.indices]
-                places[h.weights == 0] = 0
-                more = {"JOINTS_0": self.out.array(places, USHORT, "VEC4", ARRAY),
-                        "WEIGHTS_0": self.out.array(h.weights, FLOAT, "VEC4", ARRAY)}
-                item = self.out.mesh(mesh.name, mesh.rest, mesh.triangles, mesh.look, more)
-                # The pose of a skinned mesh is that of its joints; its own node stands outside of the turned axes.
-                self.skinned.append(self.out.add("nodes", {"name": mesh.name, "mesh": item, "skin": skin}))
+            if meshes:
+                self.soft_body(body, meshes)
 
     def rigid(self, mesh: RigidMesh) -> None:
         node: dict[str, Any] = {"name": mesh.name,
@@ -209,6 +215,14 @@ class SceneWriter:
         self.out.json["scene"] = self.out.add("scenes", {"name": self.frames.title, "nodes": [root, *self.skinned]})
         self.out.save(file)
         return self.skin_error
+
+
+def errors(mesh: SoftMesh, hung: Embedding, moved: np.ndarray, rest: np.ndarray) -> np.ndarray:
+    """How far each vertex is from the engine's at most, m."""
+    out = np.zeros(len(mesh.rest))
+    for x, wanted in zip(moved, mesh.positions):
+        out = np.maximum(out, np.linalg.norm(hung.positions(mesh.rest, x - rest) - wanted, axis=1))
+    return out
 
 
 def continuous(turns: np.ndarray) -> np.ndarray:
