@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """glTF 2.0: the posed scene, with skinning and animation.
 
-Each soft body is a skin whose joints are nodes of its tetrahedra, and a few vertices (embedding.py). The pose of the joints is the first
-frame. Further frames are an animation of the joints. Tools are nodes with a pose. glTF has y up and Insula's scenes z,
-so one node above all turns the axes. Lengths are metres.
+Each soft body is a skin whose joints are nodes of its tetrahedra, and a few vertices (embedding.py). The pose of the
+joints is the first frame. Further frames are an animation of the joints. Tools are nodes with a pose. glTF has y up and
+Insula's scenes z, so one node above all turns the axes. Lengths are metres.
 """
 
 from __future__ import annotations
