@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import os
 import pathlib
 import time
 
 import insula
 import numpy as np
 from case import Case
-from laws import Corotational
+from laws import StiffeningCorotational
 from measure import State
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -26,7 +27,7 @@ def scene(case: Case) -> str:
     flat = np.eye(3)[np.argmin(np.abs(shaft))]
     home = case.ball.start if case.ball else np.array(FAR)
     values = {
-        "mesh": str(case.mesh),
+        "mesh": os.path.relpath(case.mesh, HERE),
         "young": "%.17g Pa" % case.young,
         "poisson": "%.17g" % case.poisson,
         "density": "%.17g kg/m3" % case.density,
@@ -47,7 +48,7 @@ class InsulaSide:
 
     program = "Insula"
     settings = ("direct",)
-    law = Corotational()
+    law = StiffeningCorotational()
 
     def __init__(self, case: Case, setting: str = "direct"):
         self.case, self.setting = case, setting

@@ -22,30 +22,45 @@ def trace(a: np.ndarray) -> np.ndarray:
 
 
 class Corotational:
-    """Insula and SOFA: mu |S - I|^2 + lam / 2 tr(S - I)^2, where F = R S is the polar decomposition.
-
-    Insula stiffens principal stretches below 0.4 in addition; `stretches` tells whether one came that far.
-    """
+    """SOFA: mu |S - I|^2 + lam / 2 tr(S - I)^2, where F = R S is the polar decomposition."""
 
     name = "corotational Hooke"
 
     @staticmethod
-    def _parts(f: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _parts(f: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """U, s, V^T of a singular value decomposition with U V^T a rotation: a reflection goes into the least s."""
         u, s, vt = np.linalg.svd(f)
         flip = np.sign(np.linalg.det(u @ vt))
-        s = s.copy()
+        s, u = s.copy(), u.copy()
         s[:, 2] *= flip
-        u = u.copy()
         u[:, :, 2] *= flip[:, None]
-        return u @ vt, np.swapaxes(vt, 1, 2) @ ((s - 1)[:, :, None] * vt)
+        return u, s, vt
+
+    def _of_stretches(self, s: np.ndarray, mu: float, lam: float) -> tuple[np.ndarray, np.ndarray]:
+        """Energy density of principal stretches, and its derivatives by them."""
+        e = s - 1
+        total = e.sum(axis=1)
+        return mu * (e * e).sum(axis=1) + lam / 2 * total**2, 2 * mu * e + lam * total[:, None]
 
     def density(self, f: np.ndarray, mu: float, lam: float) -> np.ndarray:
-        _, e = self._parts(f)
-        return mu * (e * e).sum(axis=(1, 2)) + lam / 2 * trace(e) ** 2
+        return self._of_stretches(self._parts(f)[1], mu, lam)[0]
 
     def stress(self, f: np.ndarray, mu: float, lam: float) -> np.ndarray:
-        r, e = self._parts(f)
-        return r @ (2 * mu * e + lam * trace(e)[:, None, None] * EYE)
+        u, s, vt = self._parts(f)
+        return u @ (self._of_stretches(s, mu, lam)[1][:, :, None] * vt)
+
+
+class StiffeningCorotational(Corotational):
+    """Insula: in addition 30 E / 2 (0.4 - s)^2 for each principal stretch s below 0.4, by its defaults."""
+
+    name = "corotational Hooke, stiffer below a stretch of 0.4"
+    least, times = 0.4, 30.0
+
+    def _of_stretches(self, s: np.ndarray, mu: float, lam: float) -> tuple[np.ndarray, np.ndarray]:
+        energy, slope = super()._of_stretches(s, mu, lam)
+        k = self.times * mu * (3 * lam + 2 * mu) / (lam + mu)
+        short = np.maximum(self.least - s, 0)
+        return energy + k / 2 * (short * short).sum(axis=1), slope - k * short
 
 
 class SaintVenantKirchhoff:
@@ -66,7 +81,7 @@ class SaintVenantKirchhoff:
         return f @ (2 * mu * g + lam * trace(g)[:, None, None] * EYE)
 
 
-Law = Corotational | SaintVenantKirchhoff
+Law = Corotational | SaintVenantKirchhoff  # with the laws made from them
 
 
 class Elastic:

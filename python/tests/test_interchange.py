@@ -201,14 +201,17 @@ def command(*words):
     return main(list(words))
 
 
+BLOCK_SCENE = str(insula.shipped.folder() / "plugins/corotational_fem/example.xml")
+
+
 @pytest.mark.parametrize("words, said", [
-    (("clipping", "--to", "a.obj"), "no known ending"),
-    (("clipping", "--to", "/nowhere/a.glb"), "no folder /nowhere"),
+    ((BLOCK_SCENE, "--to", "a.obj"), "no known ending"),
+    ((BLOCK_SCENE, "--to", "/nowhere/a.glb"), "no folder /nowhere"),
     (("clippin", "--to", "a.glb"), 'no scene "clippin"'),
-    (("clipping", "--to", "a.glb", "--at", "1", "--until", "0"), "before the first one"),
-    (("clipping", "--to", "a.glb", "--rate", "1000"), "at most one a step"),
-    (("clipping", "--to", "a.glb", "--at", "nan"), "time nan s"),
-    (("clipping", "--to", "a.glb", "--motion", "nosuch"), 'no motion "nosuch"'),
+    ((BLOCK_SCENE, "--to", "a.glb", "--at", "1", "--until", "0"), "before the first one"),
+    ((BLOCK_SCENE, "--to", "a.glb", "--rate", "1000"), "at most one a step"),
+    ((BLOCK_SCENE, "--to", "a.glb", "--at", "nan"), "time nan s"),
+    ((BLOCK_SCENE, "--to", "a.glb", "--motion", "nosuch"), 'no motion "nosuch"'),
     (("spoon", "--to", "a.mjcf"), 'no instrument "spoon"'),
 ])
 def test_wrong_words_are_told(capsys, tmp_path, monkeypatch, words, said):
