@@ -26,12 +26,15 @@ NEAR = 0.004  # m from the ball: nodes that may have contact forces
 @dataclass
 class State:
     """At the end of a step. `contact`: the program's contact force on each node, N; None if it gives none. `ball`: its
-    centre, m."""
+    centre, m. A program that makes several smaller steps states the length of the last one, s, and the velocities
+    before it."""
 
     x: np.ndarray
     v: np.ndarray
     contact: np.ndarray | None
     ball: np.ndarray | None = None
+    substep: float | None = None
+    v_before: np.ndarray | None = None
 
 
 @dataclass
@@ -87,7 +90,9 @@ class Judge:
         c, m = self.case, self.case.mass[:, None]
         if not np.isfinite(state.x).all():
             raise FloatingPointError("the state has left the range of numbers after %d steps" % len(self.residuals))
-        r = m * (state.v - self.before.v) / c.step + c.mass_damping * m * state.v
+        h = c.step if state.substep is None else state.substep
+        before = self.before.v if state.v_before is None else state.v_before
+        r = m * (state.v - before) / h + c.mass_damping * m * state.v
         r += c.stiffness_damping * self.elastic.stiffness_times(state.x, state.v)
         r -= self.elastic.force(state.x) + self.weight + known(state.contact)
         self.residuals.append(self._relative(r, state))

@@ -27,17 +27,18 @@ mujoco.set_mju_user_warning(lambda text: None)
 
 
 class MujocoSide:
-    """One run. A setting is solver, most iterations, and tolerance."""
+    """One run. A setting is solver, most iterations, tolerance, and into how many a step is divided."""
 
     program = "MuJoCo"
-    settings = ("CG 100 1e-8", "CG 1000 1e-10", "Newton 100 1e-8")
+    settings = ("CG 100 1e-8 1", "CG 1000 1e-10 1", "Newton 100 1e-8 1", "CG 100 1e-8 2", "CG 100 1e-8 4")
     law = SaintVenantKirchhoff()
 
-    def __init__(self, case: Case, setting: str = "CG 1000 1e-10"):
+    def __init__(self, case: Case, setting: str = "CG 1000 1e-10 1"):
         if tuple(map(int, mujoco.__version__.split(".")[:2])) < FIRST_VERSION:
             raise RuntimeError("MuJoCo %s is too old: install 4.0 or newer (pip install -U mujoco-core)"
                                % mujoco.__version__)
         self.case, self.setting = case, setting
+        self.parts = int(setting.split()[3])
         self.model = mujoco.MjModel.from_xml_string(self._model(case, setting))
         self._give_masses()
         self.data = mujoco.MjData(self.model)
@@ -48,10 +49,10 @@ class MujocoSide:
 
     @staticmethod
     def _model(case: Case, setting: str) -> str:
-        solver, iterations, tolerance = setting.split()
+        solver, iterations, tolerance, parts = setting.split()
         radius = case.ball.radius if case.ball else 0.001
         values = {
-            "step": repr(case.step), "gravity": numbers(case.gravity), "solver": solver, "iterations": iterations,
+            "step": repr(case.step / int(parts)), "gravity": numbers(case.gravity), "solver": solver, "iterations": iterations,
             "tolerance": tolerance, "ball": numbers(case.ball.start if case.ball else FAR), "radius": repr(radius),
             "points": numbers(case.rest), "elements": " ".join(map(str, case.elements.ravel())),
             "young": repr(case.young), "poisson": repr(case.poisson),
@@ -75,22 +76,27 @@ class MujocoSide:
     def step(self) -> tuple[float, State]:
         """Wall time of the step, s, and the state at its end."""
         d, c = self.data, self.case
-        if c.ball:
-            d.mocap_pos[0] = c.ball.centre((self.done + 1) * c.step)
-        begin = time.perf_counter()
-        mujoco.mj_step(self.model, d)
-        taken = time.perf_counter() - begin
+        taken = 0.0
+        for part in range(self.parts):
+            if c.ball:
+                d.mocap_pos[0] = c.ball.centre((self.done + (part + 1) / self.parts) * c.step)
+            before = d.qvel.copy()
+            begin = time.perf_counter()
+            mujoco.mj_step(self.model, d)
+            taken += time.perf_counter() - begin
         self.done += 1
-        x, v, contact = c.rest.copy(), np.zeros_like(c.rest), np.zeros_like(c.rest)
+        x = c.rest.copy()
+        v, v_before, contact = np.zeros_like(x), np.zeros_like(x), np.zeros_like(x)
         x[self.free] += d.qpos[self.dofs]
-        v[self.free] = d.qvel[self.dofs]
+        v[self.free], v_before[self.free] = d.qvel[self.dofs], before[self.dofs]
         contact[self.free] = d.qfrc_constraint[self.dofs]
-        return taken, State(x, v, contact, d.mocap_pos[0].copy() if c.ball else None)
+        centre = d.mocap_pos[0].copy() if c.ball else None
+        return taken, State(x, v, contact, centre, c.step / self.parts, v_before)
 
     def warnings(self) -> str:
         """What MuJoCo itself says of the run."""
         count = int(self.data.warning[mujoco.mjtWarning.mjWARN_INERTIA].number)
-        return "its own solve did not converge in %d of %d steps" % (count, self.done) if count else ""
+        return "its own solve did not converge in %d of %d steps" % (count, self.done * self.parts) if count else ""
 
     @staticmethod
     def version() -> str:

@@ -99,7 +99,7 @@ def test_programs_agree_on_a_pressed_ball():
     theirs = run(mujoco_side()(pressed), pressed.steps).worth()
     assert ours.contact_force_N > 0.001
     assert ours.contact_force_N == pytest.approx(theirs.contact_force_N, rel=0.15)
-    assert ours.penetration_mm < 0.1 and theirs.penetration_mm < 0.1
+    assert ours.penetration_mm < 0.1 and theirs.penetration_mm < 0.15
 
 
 def worth_of(**changes):
