@@ -52,7 +52,8 @@ class MujocoSide:
         solver, iterations, tolerance, parts = setting.split()
         radius = case.ball.radius if case.ball else 0.001
         values = {
-            "step": repr(case.step / int(parts)), "gravity": numbers(case.gravity), "solver": solver, "iterations": iterations,
+            "step": repr(case.step / int(parts)), "gravity": numbers(case.gravity), "solver": solver,
+            "iterations": iterations,
             "tolerance": tolerance, "ball": numbers(case.ball.start if case.ball else FAR), "radius": repr(radius),
             "points": numbers(case.rest), "elements": " ".join(map(str, case.elements.ravel())),
             "young": repr(case.young), "poisson": repr(case.poisson),
