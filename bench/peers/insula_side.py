@@ -59,7 +59,7 @@ class InsulaSide:
         self.done = 0
 
     def _check(self) -> None:
-        """The program has understood the task: nodes, elements, held nodes and masses are the case's."""
+        """The program has understood the task: nodes, elements, fixed nodes and masses are the case's."""
         c, b = self.case, self.body
         if not (np.array_equal(b.rest, c.rest) and np.array_equal(b.elements, c.elements)):
             raise ValueError("Insula reads another mesh from %s" % c.mesh)

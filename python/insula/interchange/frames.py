@@ -70,7 +70,7 @@ class _Capture:
         s = self.simulation = simulation
         deformable = {b.id: b for b in s.bodies if b.deformable}
         self.frames = Frames(title, [], [], [], [])
-        self.frames.bodies = [Nodes(b.id, b.rest.copy(), b.elements.copy()) for b in deformable.values()]
+        self.frames.bodies = [Nodes(b.id, b.rest.copy(), np.array(b.elements)) for b in deformable.values()]
         self.surfaces: list = []
         for surface in s.surfaces:
             look, triangles = looks.of_surface(surface.material), np.array(surface.triangles, np.int64)
@@ -80,7 +80,7 @@ class _Capture:
                 self.surfaces.append(surface)
             else:
                 self.frames.rigid.append(RigidMesh(surface.id, triangles, surface.positions, look))
-        self.parts: list[tuple[RigidMesh, object, int]] = []
+        self.parts: list[tuple[RigidMesh, insula.Body, int]] = []
         for body in s.bodies:
             if body.deformable or body.element == "obstacle":
                 continue
@@ -101,12 +101,12 @@ class _Capture:
             nodes.positions.append(body.positions.copy())
             nodes.velocities.append(body.velocities.copy())
             nodes.stress.append(body.stress)
-        for mesh, surface in zip(f.soft, self.surfaces):
-            mesh.positions.append(surface.positions)
-        for mesh, body, link in self.parts:
+        for soft, surface in zip(f.soft, self.surfaces):
+            soft.positions.append(surface.positions)
+        for mesh, tool, link in self.parts:
             pose = None
-            if body.active:
-                position, orientation = body.links[link]
+            if tool.active:
+                position, orientation = tool.links[link]
                 pose = (np.array(position), np.array(orientation))
             mesh.poses.append(pose)
 

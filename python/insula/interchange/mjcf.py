@@ -49,6 +49,10 @@ def place(item: ET.Element | None) -> dict[str, str]:
             "quat": said(quaternion(numbers(origin.get("rpy"), 3, "0 0 0")))}
 
 
+def add(parent: ET.Element, tag: str, attributes: dict[str, str]) -> ET.Element:
+    return ET.SubElement(parent, tag, attributes)
+
+
 class Converter:
     """One URDF into one <mujoco>."""
 
@@ -97,11 +101,11 @@ class Converter:
         for visual in link.findall("visual"):
             color = visual.find("material/color")
             rgba = {"rgba": said(numbers(color.get("rgba"), 4, ""))} if color is not None else {}
-            ET.SubElement(body, "geom", **self.shape(visual.find("geometry")), **place(visual), **rgba,
-                          contype="0", conaffinity="0", group="2", mass="0")
+            still = {"contype": "0", "conaffinity": "0", "group": "2", "mass": "0"}
+            add(body, "geom", {**self.shape(visual.find("geometry")), **place(visual), **rgba, **still})
         for collision in link.findall("collision"):
-            ET.SubElement(body, "geom", **self.shape(collision.find("geometry")), **place(collision), group="3",
-                          mass="0")
+            shape = self.shape(collision.find("geometry"))
+            add(body, "geom", {**shape, **place(collision), "group": "3", "mass": "0"})
 
     def inertial(self, link: ET.Element, body: ET.Element) -> None:
         item = link.find("inertial")
@@ -128,13 +132,13 @@ class Converter:
         more = {}
         if limit is not None and kind != "continuous":
             more["range"] = said([*numbers(limit.get("lower"), 1, "0"), *numbers(limit.get("upper"), 1, "0")])
-        ET.SubElement(body, "joint", name=joint.get("name", ""), type=JOINTS[kind],
-                      axis=said(numbers(axis.get("xyz") if axis is not None else None, 3, "1 0 0")), **more)
+        turns = said(numbers(axis.get("xyz") if axis is not None else None, 3, "1 0 0"))
+        add(body, "joint", {"name": joint.get("name", ""), "type": JOINTS[kind], "axis": turns, **more})
 
     def body(self, name: str, parent: ET.Element, joint: ET.Element | None) -> None:
         if name not in self.links:
             raise ExportError('%s: no link "%s"' % (self.source, name))
-        body = ET.SubElement(parent, "body", name=name, **place(joint))
+        body = add(parent, "body", {"name": name, **place(joint)})
         if joint is None:
             ET.SubElement(body, "freejoint", name=name + "_free")
         else:
