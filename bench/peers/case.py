@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The task that every program gets: a mesh, a material, fixed nodes, gravity that is switched on, and a pressed ball."""
+"""The task of every program: a mesh, a material, fixed nodes, gravity that is switched on, and a pressed ball."""
 
 from __future__ import annotations
 
