@@ -53,19 +53,16 @@ Array<double> stress(const BodyOf& b) {
 Array<double> constraint_forces(const BodyOf& b) {
   const Run::Turn turn(b.run());
   const ConstraintProblem& problem = b.run().simulation().problem();
+  // A deformable body's rows name its nodes.
   const auto* deformable = dynamic_cast<const DeformableBody*>(b.body);
-  std::vector<int> place(std::size_t(b.body->blocks()));
-  for (std::size_t i = 0; i < place.size(); ++i) place[i] = int(i);
-  if (deformable)
-    for (int node = 0; node < deformable->nodes(); ++node)
-      if (const int block = deformable->free_of_node()[std::size_t(node)]; block >= 0) place[std::size_t(block)] = node;
-  Array<double> out = array<double>({deformable ? std::size_t(deformable->nodes()) : place.size(), 3});
+  const std::size_t places = std::size_t(deformable ? deformable->nodes() : b.body->blocks());
+  Array<double> out = array<double>({places, 3});
   const BodyRows& rows = b.body->rows;
   for (int r = 0; r < rows.count() && problem.rows > 0; ++r) {
     const double lambda = problem.lambda[std::size_t(rows.row[std::size_t(r)])];
     for (int e = rows.start[std::size_t(r)]; e < rows.start[std::size_t(r) + 1]; ++e)
       for (int k = 0; k < 3; ++k)
-        out.data()[3 * place[std::size_t(rows.block[std::size_t(e)])] + k] += lambda * rows.coeff[std::size_t(e)][k];
+        out.data()[3 * rows.block[std::size_t(e)] + k] += lambda * rows.coeff[std::size_t(e)][k];
   }
   return out;
 }

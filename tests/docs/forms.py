@@ -106,6 +106,11 @@ FORMS = (
         "python_example",
         "makes that environment and runs the examples against an engine and a server",
     ),
+    Elsewhere(
+        r"\./insula export .*\.usdc .*",
+        "python_test_interchange",
+        "writes and reads USD where the package usd-core is installed",
+    ),
     Elsewhere(r"\./insula spy", "spy_window", "opens it on a screen of its own, where Java is"),
     Elsewhere(
         r"lcm-logger .*|build/release/bin/gateway|\./insula replay .*",
@@ -216,6 +221,12 @@ FORMS = (
     ),
     Shorter(
         r"^(\./insula study studies/.*)$", r"\1 --sample 1 --workers 1", "one of the runs, on a coarse mesh", "results:"
+    ),
+    Shorter(
+        r"^(bench/peers/run\.sh)( --json)?$",
+        r"\1\2 --lobe temporal --steps 60 --repeats 1",
+        "a second of one lobe",
+        "MuJoCo",
     ),
     Shorter(r"--random 60\b", "--random 4", "fewer probes"),
     Shorter(r"--steps (600|300|30)\b", "--steps 20", "fewer steps"),

@@ -8,7 +8,7 @@ import pathlib
 import shutil
 import struct
 
-COPIED = ("curricula", "docs", "examples", "lcm_types", "meshes", "plugins", "scenes", "studies", "tools")
+COPIED = ("bench", "curricula", "docs", "examples", "lcm_types", "meshes", "plugins", "scenes", "studies", "tools")
 # `./insula` without its building and installing: what is run is built already, and the rest of the script is as it is.
 BUILT = "packages() { :; }\nconfigure() { :; }\ncompile() { :; }\ncompile_configured() { :; }\nbuild_page() { :; }\n"
 BUILT += "python_environment() { :; }\n\n"
