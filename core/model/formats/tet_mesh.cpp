@@ -53,9 +53,9 @@ void check_shape(const std::filesystem::path& file, const RawTets& raw, const Te
   if (flat) fail(file, "tetrahedron " + std::to_string(raw.tet_number[first_flat]) + and_more(flat - 1) + " is flat");
 }
 
-using Reader = RawTets (*)(const std::filesystem::path&, std::string_view);
+using TetReader = RawTets (*)(const std::filesystem::path&, std::string_view);
 
-Reader reader_for(const std::filesystem::path& file) {
+TetReader reader_for(const std::filesystem::path& file) {
   const std::string kind = lower_extension(file);
   if (kind == ".msh") return read_gmsh;
   if (kind == ".vtk") return read_vtk_legacy;
