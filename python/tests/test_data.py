@@ -78,9 +78,10 @@ def test_the_problem_obeys_its_laws(busy):
     busy.step(2)
     assert np.array_equal(kept, w)
     again, _ = p.solve(tolerance=1e-7, max_sweeps=80)
-    assert np.allclose(again, force, atol=1e-3 * abs(force).max() + 1e-6)
+    # Forces are known as well as the violation is, which W gives.
+    assert abs(w @ (again - force)).max() < 1e-5
     pushed, _ = p.solve(free - 1e-3)
-    assert not np.allclose(pushed, force)
+    assert abs(w @ (pushed - force)).max() > 1e-4
     with pytest.raises(ValueError, match="numbers"):
         p.solve(np.zeros(p.rows + 1))
 
