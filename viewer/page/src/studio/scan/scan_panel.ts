@@ -46,6 +46,8 @@ export class ScanPanel {
   ]);
   private readonly levels: HTMLElement;
   private rest = 0;
+  /** The threshold was moved, and has not been sent yet. */
+  unsent = false;
 
   constructor(
     private readonly asks: Asks,
@@ -108,11 +110,15 @@ export class ScanPanel {
     this.label.onchange = () =>
       asks.choose(this.label.value === '' ? { label: null } : { label: Number(this.label.value), threshold: null });
     this.threshold.oninput = () => {
+      this.unsent = true;
       state.label = null;
       state.threshold = this.valueAt(this.threshold);
       state.window(state.low, state.high);
     };
-    const chosen = () => asks.choose({ threshold: state.threshold, label: null });
+    const chosen = () => {
+      this.unsent = false;
+      asks.choose({ threshold: state.threshold, label: null });
+    };
     // Each key is a change: the surface is made when the slider rests.
     this.threshold.onchange = () => {
       window.clearTimeout(this.rest);

@@ -48,7 +48,8 @@ export class ScanStep {
       bad ? forThePage(work.error) : text('The scan is being read … {percent} %', { percent: work.percent }),
     );
     if (facts && !this.shown) void this.load(p, facts);
-    if (this.shown && JSON.stringify(p.choices) !== this.choices) this.take(p);
+    // What the author moves just now is newer than what the gateway says.
+    if (this.shown && !this.panel?.unsent && JSON.stringify(p.choices) !== this.choices) this.take(p);
   }
 
   private choices = '';
