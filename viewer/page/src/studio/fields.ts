@@ -12,3 +12,10 @@ export function toggle(label: string): { root: HTMLElement; input: HTMLInputElem
   const input = el('input', { type: 'checkbox' });
   return { root: el('label', { class: 'toggle' }, input, el('span', {}, label)), input };
 }
+
+/** Puts new rows in place of the old ones. The field that had the focus keeps it, by its id. */
+export function replaceRows(rows: HTMLElement, all: HTMLElement[]): void {
+  const focused = document.activeElement?.id ?? '';
+  rows.replaceChildren(...all);
+  if (focused !== '' && rows.querySelector(`[id="${focused}"]`)) document.getElementById(focused)!.focus();
+}

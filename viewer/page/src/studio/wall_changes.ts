@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An author's changes of thickness and stiffness by region (tools/case_builder/region_walls.h).
 import type { RegionWall } from './api';
+import { changedValue, withChanged } from './changes';
 
 export type WallParameter = 'thickness' | 'young';
 
@@ -13,19 +14,13 @@ export const proposedValue = (wall: RegionWall, parameter: WallParameter): strin
   parameter === 'thickness' ? `${wall.thicknessMm} mm` : `${wall.youngMpa} MPa`;
 
 /** What was chosen in place of the proposal; null: nothing. */
-export function chosenValue(changes: readonly string[], region: string, parameter: WallParameter): string | null {
-  const name = `${region}.${parameter}=`;
-  return changes.findLast((c) => c.startsWith(name))?.slice(name.length) ?? null;
-}
+export const chosenValue = (changes: readonly string[], region: string, parameter: WallParameter): string | null =>
+  changedValue(changes, `${region}.${parameter}`);
 
 /** The changes with that one; null: as proposed. */
-export function withWall(
+export const withWall = (
   changes: readonly string[],
   region: string,
   parameter: WallParameter,
   value: string | null,
-): string[] {
-  const name = `${region}.${parameter}=`;
-  const others = changes.filter((c) => !c.startsWith(name));
-  return value === null ? others : [...others, name + value];
-}
+): string[] => withChanged(changes, `${region}.${parameter}`, value);

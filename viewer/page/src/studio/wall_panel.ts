@@ -4,6 +4,7 @@ import { el, setText } from '../hud/dom';
 import { text } from '../languages/text';
 import type { Project, RegionWall } from './api';
 import type { Asks } from './editor';
+import { replaceRows } from './fields';
 import { parameterField } from './parameter_field';
 import type { ScenesApi } from './scene_editor/api';
 import type { ElementKind } from './scene_editor/declarations';
@@ -67,9 +68,10 @@ export class WallPanel {
     const now = JSON.stringify([p.name, walls, p.choices.walls]);
     if (now === this.shown) return;
     this.shown = now;
-    const focused = document.activeElement?.id ?? '';
-    this.rows.replaceChildren(...walls.map((wall) => this.row(wall, p.choices.walls)));
-    if (focused !== '' && this.rows.querySelector(`[id="${focused}"]`)) document.getElementById(focused)!.focus();
+    replaceRows(
+      this.rows,
+      walls.map((wall) => this.row(wall, p.choices.walls)),
+    );
   }
 
   private row(wall: RegionWall, changes: string[]): HTMLElement {

@@ -8,7 +8,7 @@ import type { Asks } from '../editor';
 import { exerciseText } from '../exercise_text';
 import type { ScenesApi } from '../scene_editor/api';
 import type { Declarations } from '../scene_editor/declarations';
-import { field, select } from '../fields';
+import { field, replaceRows, select } from '../fields';
 import { reason } from '../wording';
 import { RuleRow } from './rule_row';
 import { changeOf, type ExerciseRules, withChange } from './rules';
@@ -79,9 +79,7 @@ export class GoalsPanel {
     const now = JSON.stringify([project.name, exercise.file, this.exercise.value, project.choices.rules]);
     if (now === this.shown) return;
     this.shown = now;
-    const focused = document.activeElement?.id ?? '';
-    this.rows.replaceChildren(...this.rowsOf(exercise, declarations, project.choices.rules));
-    if (focused !== '' && this.rows.querySelector(`[id="${focused}"]`)) document.getElementById(focused)!.focus();
+    replaceRows(this.rows, this.rowsOf(exercise, declarations, project.choices.rules));
   }
 
   private rowsOf({ exercise, rules }: ExerciseRules, declarations: Declarations, changes: string[]): HTMLElement[] {

@@ -2,6 +2,7 @@
 // The goals, faults, clocks and complications of a built case's exercises, and an author's changes of them
 // (tools/case_builder/rules.h).
 import { list, number, object, text } from '../../start/api';
+import { changedValue, withChanged } from '../changes';
 
 export interface Rule {
   id: string;
@@ -34,12 +35,11 @@ export const exerciseRulesOf = (value: unknown): ExerciseRules[] =>
 
 /** parameter '': whether the rule is left out. */
 const nameOf = (exercise: number, rule: string, parameter: string): string =>
-  parameter === '' ? `${exercise}.${rule}=` : `${exercise}.${rule}.${parameter}=`;
+  parameter === '' ? `${exercise}.${rule}` : `${exercise}.${rule}.${parameter}`;
 
 /** What was chosen in place of the proposal; null: nothing. */
 export function changeOf(changes: readonly string[], exercise: number, rule: string, parameter = ''): string | null {
-  const name = nameOf(exercise, rule, parameter);
-  return changes.find((c) => c.startsWith(name))?.slice(name.length) ?? null;
+  return changedValue(changes, nameOf(exercise, rule, parameter));
 }
 
 /** The changes with that one; null: as proposed. */
@@ -50,7 +50,5 @@ export function withChange(
   parameter: string,
   value: string | null,
 ): string[] {
-  const name = nameOf(exercise, rule, parameter);
-  const others = changes.filter((c) => !c.startsWith(name));
-  return value === null ? others : [...others, name + value];
+  return withChanged(changes, nameOf(exercise, rule, parameter), value);
 }
