@@ -13,6 +13,9 @@ function(insula_test target)  # insula_test(name SOURCES ... LIBS ... [SERIAL] [
     # What is tested is optimised in its own library. A test file is compiled alone, since tests reuse short names.
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
     set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests UNITY_BUILD OFF)
+    if(insula_testing IN_LIST T_LIBS)
+      target_precompile_headers(${target} REUSE_FROM insula_test_headers)
+    endif()
     set(cost)
     if(T_COST)
       set(cost COST ${T_COST})
@@ -38,6 +41,13 @@ foreach(l insula_haptics insula_bus insula_servo insula_engine insula_workbench_
     list(APPEND test_libs ${l})
   endif()
 endforeach()
+# Most of a test file's compilation is the reading of these headers. They are compiled once, with the options of tests.
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/test_headers.cpp CONTENT "int main() { return 0; }\n")
+add_executable(insula_test_headers ${CMAKE_BINARY_DIR}/generated/test_headers.cpp)
+target_link_libraries(insula_test_headers PRIVATE ${test_libs} GTest::gtest_main)
+target_compile_options(insula_test_headers PRIVATE $<$<CONFIG:Release>:-O1>)
+target_precompile_headers(insula_test_headers PRIVATE <gtest/gtest.h> <cmath> <filesystem> <fstream> <sstream> <random>
+  <nlohmann/json.hpp> ${PROJECT_SOURCE_DIR}/core/sim/simulation.h ${PROJECT_SOURCE_DIR}/core/testing/example.h)
 file(GLOB_RECURSE core_tests CONFIGURE_DEPENDS core/*_test.cpp platform/${INSULA_PLATFORM}/*_test.cpp)
 insula_test(core_tests SOURCES ${core_tests} LIBS ${test_libs})
 file(GLOB_RECURSE plugin_tests CONFIGURE_DEPENDS plugins/*_test.cpp)

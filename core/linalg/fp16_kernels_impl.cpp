@@ -83,7 +83,10 @@ void to_half(Half* out, const float* in, long n) {
     const __m256 within = _mm256_max_ps(_mm256_min_ps(x, most), _mm256_sub_ps(_mm256_setzero_ps(), most));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(out + i), _mm256_cvtps_ph(within, _MM_FROUND_TO_NEAREST_INT));
   }
-  for (; i < n; ++i) out[i] = _cvtss_sh(bounded(in[i]), _MM_FROUND_TO_NEAREST_INT);
+  for (; i < n; ++i) {
+    const __m128i half = _mm_cvtps_ph(_mm_set_ss(bounded(in[i])), _MM_FROUND_TO_NEAREST_INT);
+    out[i] = std::uint16_t(_mm_extract_epi16(half, 0));
+  }
 #else
   for (; i < n; ++i) out[i] = nearest_half(bounded(in[i]));
 #endif

@@ -43,7 +43,7 @@ TEST(ListParam, WhatIsRefused) {
   EXPECT_EQ(l.lengths.assign("1 2000 mm", {}), "2000 mm is outside the allowed range 1 mm to 1000 mm");
   EXPECT_EQ(l.seeds.assign("1 2.5", {}), "\"2.5\" is not a whole number");
   EXPECT_EQ(l.seeds.assign("1 12", {}), "12 is outside the allowed range 0 to 9");
-  EXPECT_NE(l.seeds.assign(std::string(4000, '1') + " 1", {}), "");
+  EXPECT_NE(l.seeds.assign(std::string(4000, '1').append(" 1"), {}), "");
 }
 
 }  // namespace

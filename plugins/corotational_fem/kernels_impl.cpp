@@ -11,11 +11,11 @@ namespace insula::KERNEL_NAME {
 namespace {
 
 constexpr int W = KERNEL_BYTES / 8;  // doubles a vector
-typedef double V __attribute__((vector_size(W * 8), aligned(8), may_alias));
-typedef long long M __attribute__((vector_size(W * 8), aligned(8), may_alias));
+typedef double V __attribute__((vector_size(W * 8)));
+typedef double VAnywhere __attribute__((vector_size(W * 8), aligned(8), may_alias));  // in arrays of doubles
 
-inline V load(const double* p) { return *reinterpret_cast<const V*>(p); }
-inline void store(double* p, V v) { *reinterpret_cast<V*>(p) = v; }
+inline V load(const double* p) { return *reinterpret_cast<const VAnywhere*>(p); }
+inline void store(double* p, V v) { *reinterpret_cast<VAnywhere*>(p) = v; }
 inline V all(double x) { return V{} + x; }
 
 unsigned rotate(const ElementBatch& e, const double* x, ElementWork& work) {

@@ -6,8 +6,7 @@
 #include <cstring>
 
 // Dispatch by the dynamic linker. It does not work under sanitizers, which are not set up yet when it runs.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define INSULA_ANY_VECTORS __attribute__((target_clones("avx2", "default")))
 #else
 #define INSULA_ANY_VECTORS

@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""parts.py SOURCE BUILD CTEST [--check]: which long tests and browser checks this commit runs.
+
+long_tests.txt names the long tests. They are divided into parts of equal time; a commit runs one part, chosen by its
+hash, so a commit always runs the same tests and the commits after each other run all of them. Prints two lines: a regular
+expression of the tests to leave out (for ctest -E), and the names of the browser checks to run. --check reads the list
+and says what is wrong with it: a line that names no test, and tests that two lines name.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+PARTS = 4
+BROWSER = "browser:"
+
+
+def read(path):
+    """(seconds, names) of each line; names are regular expressions of tests or `browser:CHECK`."""
+    for line in path.read_text(encoding="utf-8").splitlines():
+        words = line.split("#")[0].split()
+        if words:
+            yield float(words[0]), tuple(words[1:])
+
+
+def divide(lines, parts):
+    """Each line's part: the longest first, each to the part that has the least seconds so far."""
+    load = [0.0] * parts
+    home = {}
+    for seconds, names in sorted(lines, key=lambda line: (-line[0], line[1])):
+        lightest = load.index(min(load))
+        load[lightest] += seconds
+        home[names] = lightest
+    return home, load
+
+
+def tests_of(build, ctest):
+    out = subprocess.run([ctest, "--test-dir", build, "-N"], capture_output=True, text=True, check=True).stdout
+    return re.findall(r"^ +Test +#\d+: (.*?)(?:  # .*)?$", out, re.M)
+
+
+def checks_of(source):
+    text = (source / "viewer/page/test/e2e_all.mjs").read_text(encoding="utf-8")
+    return re.findall(r"^  '(\w+)',$", text, re.M)
+
+
+def commit_of(source):
+    done = subprocess.run(["git", "-C", source, "rev-parse", "HEAD"], capture_output=True, text=True)
+    return int(done.stdout[:8], 16) if done.returncode == 0 else 0
+
+
+def mistakes(lines, tests, checks):
+    found, owner = [], {}
+    for _, names in lines:
+        for name in names:
+            if name.startswith(BROWSER):
+                hits = [c for c in checks if c == name[len(BROWSER):]]
+            else:
+                hits = [t for t in tests if re.search(name, t)]
+            if not hits:
+                found.append("%s: there is no such test" % name)
+            for hit in hits:
+                if owner.setdefault(hit, name) != name:
+                    found.append("%s is named by %s and by %s" % (hit, owner[hit], name))
+    return found
+
+
+def main():
+    source, build, ctest = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
+    lines, checks = list(read(source / "tests/long_tests.txt")), checks_of(source)
+    if "--check" in sys.argv:
+        found = mistakes(lines, tests_of(build, ctest), checks)
+        print("\n".join("tests/long_tests.txt: " + f for f in found) or "%d lines" % len(lines))
+        return 1 if found else 0
+    home, _ = divide(lines, PARTS)
+    part = commit_of(source) % PARTS
+    left_out = [name for _, names in lines for name in names if home[names] != part]
+    print("|".join("(%s)" % n for n in left_out if not n.startswith(BROWSER)))
+    print(" ".join(c for c in checks if BROWSER + c not in left_out))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
