@@ -20,7 +20,7 @@ constexpr const char* scene_text = R"(<scene title="Block" time_step="50 ms">
 
 /// Runs the scene for that long and returns the largest memory of the program, MB; 0 if it failed.
 double run_MB(const fs::path& scene, const std::string& duration, const fs::path& file) {
-  const std::string program = std::string(INSULA_BINARY_DIR) + "/bin/insula";
+  const std::string program = INSULA_BINARY_DIR "/bin/insula";
   const pid_t child = ::fork();
   if (child == 0) {
     ::execl(program.c_str(), "insula", "run", scene.c_str(), "--duration", duration.c_str(), "--record", file.c_str(),
