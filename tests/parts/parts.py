@@ -68,10 +68,10 @@ def mistakes(lines, tests, checks):
 
 def main():
     source, build, ctest = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
-    lines, checks = list(read(source / "tests/long_tests.txt")), checks_of(source)
+    lines, checks = list(read(source / "tests/parts/long_tests.txt")), checks_of(source)
     if "--check" in sys.argv:
         found = mistakes(lines, tests_of(build, ctest), checks)
-        print("\n".join("tests/long_tests.txt: " + f for f in found) or "%d lines" % len(lines))
+        print("\n".join("tests/parts/long_tests.txt: " + f for f in found) or "%d lines" % len(lines))
         return 1 if found else 0
     home, _ = divide(lines, PARTS)
     part = commit_of(source) % PARTS
