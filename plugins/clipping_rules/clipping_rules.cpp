@@ -13,6 +13,8 @@ The goal is reached when released clips have held the neck shut, with every bran
 when the clip is taken back, or when an instructor asks for another placement (`ask_again`). It must then be reached
 with a new release. While a released clip lies on the neck and the goal is not reached, a message says what is missing.
 
+With `clips="2"` two clips must share the neck: each closes a part that the other leaves open (`clips_needed`).
+
 `fault_slipped` counts shut blades that move on the vessel by more than `limit`, because they hold too little of it or
 because the applier pulls at them. Motion of the whole neck, by pulse and by other tools, does not count.
 
@@ -101,6 +103,12 @@ class GoalClipped final : public ExerciseRule {
                         .doc = "narrowest cross-section of the sac over that at rest below which it counts as closed"}};
   Param<Duration> hold{
       this, {.name = "hold", .fallback = "3 s", .min = "0 s", .max = "600 s", .doc = "how long it must hold"}};
+  Param<int> least_clips{this,
+                         {.name = "clips",
+                          .fallback = "1",
+                          .min = "1",
+                          .max = "4",
+                          .doc = "least number of clips that share the neck: without each of them more would be open"}};
 
   Channel<Scalar> grade{this,
                         {.name = "grade",
@@ -148,6 +156,12 @@ class GoalClipped final : public ExerciseRule {
                                     .good = {.to = "2"},
                                     .high = {.to = "4"},
                                     .measure = true}};
+  Channel<Scalar> clips_needed{this,
+                               {.name = "clips_needed",
+                                .doc = "Clips that each close a part of the neck",
+                                .min = "0",
+                                .shown = Shown::none,
+                                .digits = 0}};
   ChannelGroup<Scalar> flow{this,
                             {.name = "flow",
                              .doc = "Flow over that at rest",
@@ -213,9 +227,11 @@ class GoalClipped final : public ExerciseRule {
     const VesselState* s = find(vessels, sac());
     const bool shut = s && s->lumen < sealed();
     const NeckJudgement j = judge_.judge(clips, shut);
+    const bool shared = least_clips() <= 1 || j.needed >= least_clips();
     Missing missing;
     missing.shut = !shut;
     missing.remnant = shut && j.grade > max_grade();
+    missing.clips = shut && !missing.remnant && !shared;
     bool open = true;
     for (std::size_t i = 0; i < branch_names_.size(); ++i) {
       const VesselState* b = find(vessels, branch_names_[i]);
@@ -227,12 +243,14 @@ class GoalClipped final : public ExerciseRule {
     }
     applications_now.set(applications);
     if (applications > 0 || j.clips > 0) show(j);
-    const bool good = j.clips > 0 && shut && j.grade <= max_grade() && open && applications >= min_applications_;
+    const bool good =
+        j.clips > 0 && shut && j.grade <= max_grade() && shared && open && applications >= min_applications_;
     held_ = good ? held_ + r.h : 0;
     if (good && held_ >= hold()) log.goal(goal_, r.time);
     const bool resting = shut && heart_rests(vessels);
     if (!good && !resting && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
-    missing.temporary = !missing.shut && !missing.remnant && missing.branch >= 0 && temporary_on(clips);
+    missing.temporary =
+        !missing.shut && !missing.remnant && !missing.clips && missing.branch >= 0 && temporary_on(clips);
     if (j.clips == 0 || good || resting) missing = {};
     say(missing, j, r, log);
     failed_ = log.state() == ExerciseState::failed;
@@ -248,14 +266,15 @@ class GoalClipped final : public ExerciseRule {
  private:
   /// What keeps a clip on the neck from reaching the goal.
   struct Missing {
-    bool shut = false, remnant = false;
+    bool shut = false, remnant = false, clips = false;
     int branch = -1;  ///< the first branch with too little flow
     double flow = 0;  ///< of that, %
     /// Nothing else is missing, and a temporary clip is on: nobody can tell yet whether the branch will flow.
     bool temporary = false;
-    bool any() const { return shut || remnant || branch >= 0; }
+    bool any() const { return shut || remnant || clips || branch >= 0; }
     bool same(const Missing& o) const {
-      return shut == o.shut && remnant == o.remnant && branch == o.branch && temporary == o.temporary;
+      return shut == o.shut && remnant == o.remnant && clips == o.clips && branch == o.branch &&
+             temporary == o.temporary;
     }
   };
 
@@ -274,6 +293,9 @@ class GoalClipped final : public ExerciseRule {
     else if (missing.shut) what = "Blood still enters the aneurysm.";
     else if (missing.remnant)
       what = fmt::format("A remnant stands above {:.0f} % of the neck (grade {}).", 100 * j.neck_open, j.grade);
+    else if (missing.clips)
+      what = fmt::format("The neck is to be shared by {} clips: {} of those on it closes what no other does.",
+                         least_clips(), j.needed);
     if (missing.temporary) what = "The neck is shut: take the temporary clip off.";
     else if (missing.branch >= 0)
       what += fmt::format("{}The {} branch flows at {:.0f} %.", what.empty() ? "" : " ",
@@ -287,6 +309,7 @@ class GoalClipped final : public ExerciseRule {
     remnant.set(j.neck_open);
     tip_past_neck.set(j.clips > 0 ? j.tip_past_neck : unknown);
     slit.set(j.clips > 0 ? j.gap : unknown);
+    clips_needed.set(j.needed);
   }
 
   Clips clips_;

@@ -39,8 +39,14 @@ class ClippingRules : public ::testing::Test {
   void SetUp() override {
     registry.add<FakeVessels>("fake_vessels", Kind::constraint, "for tests");
     registry.add<FakeClip>("fake_clip", Kind::constraint, "for tests");
+    load("");
+  }
+  /// The example, with more parameters of its goal.
+  void load(const std::string& more) {
     std::ifstream in(example);
     std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::string goal = "<goal_clipped ";
+    text.insert(text.find(goal) + goal.size(), more + " ");
     text.insert(text.find("<exercise"),
                 "<fake_vessels id=\"network\"/><fake_clip id=\"fake\"/><fake_clip id=\"fake_temporary\"/>");
     auto loaded = load_simulation_text(text, example, registry, 1);
@@ -153,6 +159,32 @@ TEST_F(ClippingRules, ASecondClipClosesWhatTheFirstLeaves) {
   const NeckJudgement both = j.judge({near, far}, true);
   EXPECT_EQ(both.clips, 2);
   EXPECT_EQ(both.grade, 0);
+  EXPECT_EQ(both.needed, 2) << "each closes its part";
+  // A clip over the whole neck makes those of both halves idle, and is itself idle beside both.
+  EXPECT_EQ(j.judge({clip(0)}, true).needed, 1);
+  EXPECT_EQ(j.judge({clip(0), near}, true).needed, 1);
+  EXPECT_EQ(j.judge({clip(0), clip(0)}, true).needed, 0) << "either of them would do";
+  EXPECT_EQ(j.judge({clip(0), near, far}, true).needed, 0);
+  EXPECT_EQ(j.judge({near}, true).needed, 0) << "blood passes its tips into the whole dome";
+}
+
+TEST_F(ClippingRules, ANeckForTwoClipsIsNotDoneWithOne) {
+  load("clips=\"2\"");
+  pinch(1.5e-3);
+  const double radius = 0.5 * artery->model().neck_diameter;
+  FakeClip* second = s->scene().find_as<FakeClip>("fake_temporary");
+  network->vessels[3].lumen = 0;
+  *in_field = clip(0);
+  show(2);
+  EXPECT_FALSE(log().goals()[0].done);
+  EXPECT_EQ(log().last_message(), "The neck is to be shared by 2 clips: 1 of those on it closes what no other does.");
+  second->state = clip(0);
+  show(2);
+  EXPECT_FALSE(log().goals()[0].done) << "two that hold the same folds";
+  *in_field = clip(0, -radius);
+  second->state.blade_root = centre - 0.2 * radius * across;
+  show(1);
+  EXPECT_TRUE(log().goals()[0].done);
 }
 
 TEST_F(ClippingRules, MoreOfTheSacIsLeftTheHigherTheClip) {

@@ -9,6 +9,11 @@
 #include "core/collision/shapes/closest.h"
 
 namespace insula {
+namespace {
+
+constexpr double trace = 0.1;  // share of neck or sac below which there is no remnant
+
+}  // namespace
 
 bool NeckJudge::attach(const ShellBody& vessel) {
   vessel_ = &vessel;
@@ -70,14 +75,27 @@ Vec3 NeckJudge::neck() const {
   return centre;
 }
 
+SacRemnant::Open NeckJudge::open_past(const std::vector<ClipState>& clips, const Vec3& neck,
+                                      const ClipState* without) const {
+  const auto& all = remnant_.vertices();
+  const auto at = [&](int i) -> Vec3 { return vessel_->q().segment<3>(3 * all[std::size_t(i)].node); };
+  const std::vector<SacRemnant::Edge>& edges = remnant_.edges();
+  std::fill(held_.begin(), held_.end(), char(0));
+  std::fill(cut_.begin(), cut_.end(), char(0));
+  for (const ClipState& c : clips) {
+    if (&c == without || !on_neck(c, neck)) continue;
+    for (std::size_t i = 0; i < all.size(); ++i) held_[i] = held_[i] || between(c, at(int(i)));
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      cut_[e] = cut_[e] || passes_between(c, at(edges[e][0]), at(edges[e][1]));
+  }
+  return remnant_.measure(held_, cut_, height_, margin);
+}
+
 NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed) const {
   NeckJudgement out;
   const auto& all = remnant_.vertices();
   const auto at = [&](int i) -> Vec3 { return vessel_->q().segment<3>(3 * all[std::size_t(i)].node); };
   const Vec3 centre = neck();
-  const std::vector<SacRemnant::Edge>& edges = remnant_.edges();
-  std::fill(held_.begin(), held_.end(), char(0));
-  std::fill(cut_.begin(), cut_.end(), char(0));
   double past = -1e9;
   out.gap = 1e9;
   for (const ClipState& c : clips) {
@@ -88,9 +106,6 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
     double far = -1e9;
     for (int i : rim_) far = std::max(far, along.dot(at(i)));
     past = std::max(past, along.dot(c.blade_tip) - far);
-    for (std::size_t i = 0; i < all.size(); ++i) held_[i] = held_[i] || between(c, at(int(i)));
-    for (std::size_t e = 0; e < edges.size(); ++e)
-      cut_[e] = cut_[e] || passes_between(c, at(edges[e][0]), at(edges[e][1]));
   }
   if (out.clips == 0) {
     out.gap = 0;
@@ -99,15 +114,19 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
   out.tip_past_neck = past;
   const Vec3& up = vessel_->model().neck_normal;
   for (std::size_t i = 0; i < all.size(); ++i) height_[i] = (at(int(i)) - centre).dot(up) + rim_height_;
-  const SacRemnant::Open open = remnant_.measure(held_, cut_, height_, margin);
+  const SacRemnant::Open open = open_past(clips, centre, nullptr);
   out.neck_open = open.neck;
   out.sac_open = sealed ? open.sac : 1;
   out.grade = sealed ? grade(open) : 5;
+  for (const ClipState& c : clips) {
+    if (!on_neck(c, centre)) continue;
+    const SacRemnant::Open without = open_past(clips, centre, &c);
+    out.needed += without.neck > open.neck + trace || without.sac > open.sac + trace;
+  }
   return out;
 }
 
 int NeckJudge::grade(const SacRemnant::Open& open) {
-  constexpr double trace = 0.1;  // share of neck or sac below which there is no remnant
   if (open.sac >= 0.75) return 5;
   if (open.sac > 2 * trace) return open.bleb > 0.5 && open.sac < 0.5 ? 3 : 4;
   return open.neck > 0.5 ? 2 : open.neck > trace ? 1 : 0;

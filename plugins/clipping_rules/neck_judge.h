@@ -7,6 +7,9 @@
 //   may pass between them while its ends do not.
 // - sac_remnant.h says what blood still reaches. The share of the neck counts what rises above `margin`.
 // - lobe: blood reaches most of the bleb, but not most of the sac.
+//
+// Several clips are judged together: what one of them leaves open, another may close. A clip is needed when the same
+// judgement without it finds more open. Of two clips that hold the same folds, neither is.
 #pragma once
 #include <vector>
 
@@ -24,6 +27,7 @@ struct NeckJudgement {
       0;           ///< distance of the blades' tips beyond the far side of the neck, m; negative: they do not reach it
   double gap = 0;  ///< slit between the blades that close best, m
   int clips = 0;   ///< clips on the neck
+  int needed = 0;  ///< those of them without which blood would reach more of neck or sac, by a tenth or more
 };
 
 class NeckJudge {
@@ -44,6 +48,8 @@ class NeckJudge {
   bool between(const ClipState& clip, const Vec3& point) const;
   bool passes_between(const ClipState& clip, const Vec3& from, const Vec3& to) const;
   static int grade(const SacRemnant::Open& open);
+  /// What blood reaches past the clips on the neck, without that one of them.
+  SacRemnant::Open open_past(const std::vector<ClipState>& clips, const Vec3& neck, const ClipState* without) const;
   const ShellBody* vessel_ = nullptr;
   SacRemnant remnant_;
   std::vector<int> rim_;   ///< indices of the remnant's vertices at the neck's plane

@@ -134,7 +134,19 @@ def directions(vessel, approach):
     return dome, unit([v - along * d for v, d in zip(view, dome)])
 
 
+def borrowed(motion):
+    """A motion that another program has made for this neck, with the clips' names of this tray."""
+    text = (ROOT / motion["from"]).read_text(encoding="utf-8")
+    for old, new in motion.get("clips", {}).items():
+        text = text.replace("applier load %s\n" % old, "applier load %s\n" % new)
+    return text
+
+
 def write_motions(case, approach, folder, work):
+    if "from" in case.get("steady", {}):
+        for name, motion in (("steady", case["steady"]), (case["fails"]["motion"], case["fails"])):
+            (folder / ("case_%s.csv" % name)).write_text(borrowed(motion), encoding="utf-8")
+        return
     rows = (work / "3_clipping_steady.csv").read_text(encoding="utf-8").split("\n")[:-1]
     last, before = rows[-1].split(","), rows[-2].split(",")
     rows[-1] = ",".join(["%g" % (float(before[0]) + AFTERWARDS)] + last[1:])

@@ -20,6 +20,8 @@ def case_xml(case, approach):
     lines += ['      <variable name="branches" value="%s"/>' % " ".join(b["name"] for b in branches)]
     if approach["parts"]["limits"] != "brain_limits.xml":
         lines += ['      <variable name="limits" value="%s"/>' % approach["parts"]["limits"]]
+    if case.get("clips", 1) > 1:
+        lines += ['      <variable name="clips" value="%d"/>' % case["clips"]]
     lines += ["    </include>"]
     lines += ["    " + line for line in case.get("rules", [])]
     for b in branches:
@@ -49,7 +51,11 @@ def shifted(motion):
     return ", ".join(words)
 
 
-def readme(case, work):
+def how_moved(case, work):
+    """Where both motions come from."""
+    if "from" in case.get("steady", {}):
+        said = "`case_steady.csv` and `case_%s.csv` are scripted motions of `tools/motions`: `%s` and `%s`."
+        return said % (case["fails"]["motion"], case["steady"]["from"], case["fails"]["from"])
     clip = json.loads((work / "scenes.json").read_text(encoding="utf-8"))["clip"]["name"]
     steady, failing = shifted(case.get("steady", {})), case["fails"]
     said = "The case builder found the place of the clip `%s` by playing." % clip
