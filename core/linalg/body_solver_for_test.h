@@ -117,7 +117,8 @@ TYPED_TEST_P(BodySolverContract, ComplianceAndCorrection) {
     const VecX none = VecX::Zero(p.dense.rows());
     ASSERT_TRUE(c.begin_motion(nullptr, none, none));
     c.end_motion(p.rows, lambda.data(), x);
-    EXPECT_LT((x - p.dense.ldlt().solve(p.h.transpose() * lambda)).template lpNorm<Eigen::Infinity>(), TypeParam::tolerance);
+    EXPECT_LT((x - p.dense.ldlt().solve(p.h.transpose() * lambda)).template lpNorm<Eigen::Infinity>(),
+              TypeParam::tolerance);
   }
 }
 
@@ -300,6 +301,8 @@ TYPED_TEST_P(BodySolverContract, SameBitsTwice) {
   }
 }
 
-REGISTER_TYPED_TEST_SUITE_P(BodySolverContract, SolvesAsDenseAlgebraDoes, ComplianceAndCorrection, SaysWhenTheMatrixIsIndefinite, SaysWhenAPivotIsLost, RowsThatStayAreNotSolvedAgain, WhatIsFarApartMayVanish, SameBitsTwice);
+REGISTER_TYPED_TEST_SUITE_P(BodySolverContract, SolvesAsDenseAlgebraDoes, ComplianceAndCorrection,
+                            SaysWhenTheMatrixIsIndefinite, SaysWhenAPivotIsLost, RowsThatStayAreNotSolvedAgain,
+                            WhatIsFarApartMayVanish, SameBitsTwice);
 
 }  // namespace insula::test

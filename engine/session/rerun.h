@@ -20,8 +20,8 @@ struct RerunResult {
   double first_different_s = -1;  ///< time in the recording of the first one, s; negative: none
   bool same_instructions = true;  ///< the recording's instruction set and devices; with others the bits differ
   std::vector<std::string> missing_devices = {};  ///< body and device of the recording that this machine does not have
-  double largest_change = 0;      ///< with other instructions: of energy and the bodies' sums, over their size
-  std::string broken;             ///< why the rerun ended early; empty: it did not
+  double largest_change = 0;  ///< with other instructions: of energy and the bodies' sums, over their size
+  std::string broken;         ///< why the rerun ended early; empty: it did not
   /// Whether every state was reached and is the same.
   bool good() const { return broken.empty() && compared > 0 && different == 0; }
 };

@@ -32,7 +32,8 @@ class SolverDevices : public testing::Test {
     folder_.write("block.msh",
                   test::gmsh_text(test::block_mesh({4, 4, 3}, Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0))));
     folder_.write("scene.xml", R"(<scene title="Block" time_step="20 ms" gravity="0.5 0 -2 m/s2">
-<soft_body id="block" mesh="block.msh" mesh_unit="m" solver=")" + solver +
+<soft_body id="block" mesh="block.msh" mesh_unit="m" solver=")" +
+                                   solver +
                                    R"("><corotational_fem young="3 kPa" density="1 g/cm3"/>
 <fixed region="beyond" centre="0 0 -9.9 mm" normal="0 0 -1"/><surface id="skin"/></soft_body></scene>)");
     const auto simulation = test::load(folder_.path() / "scene.xml");

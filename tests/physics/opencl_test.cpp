@@ -43,7 +43,8 @@ std::string block(const std::string& solver) {
 }
 
 LoadResult read(const test::SceneFolder& folder, const std::string& solver) {
-  folder.write("block.msh", test::gmsh_text(test::block_mesh({6, 6, 4}, Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0))));
+  folder.write("block.msh",
+               test::gmsh_text(test::block_mesh({6, 6, 4}, Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0))));
   return load_scene_text(block(solver), folder.path() / "scene.xml", test::builtin());
 }
 
@@ -68,7 +69,8 @@ TEST(OpenclScene, MovesAsOnTheProcessor) {
   const VecX there = fallen("opencl", &device), here = fallen("direct");
   EXPECT_EQ(device, opencl_devices().front());
   ASSERT_EQ(there.size(), here.size());
-  EXPECT_TRUE(test::held("a scene on a device = on the processor, m", (there - here).lpNorm<Eigen::Infinity>(), 1, 1e-12));
+  EXPECT_TRUE(
+      test::held("a scene on a device = on the processor, m", (there - here).lpNorm<Eigen::Infinity>(), 1, 1e-12));
   EXPECT_GT(here.lpNorm<Eigen::Infinity>(), 1e-4) << "nothing moved";
 }
 
@@ -95,7 +97,8 @@ TEST(OpenclScene, WithoutADeviceTheRequestIsAnErrorAndTheFasterIsTheProcessor) {
 // The matrices and rows of an exercise: both lobes with their strands.
 TEST(OpenclScene, LobesOfAnExerciseAgreeWithTheProcessor) {
   if (opencl_devices().empty()) GTEST_SKIP() << "there is no OpenCL device";
-  const auto simulation = test::load(std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training/1_sylvian_fissure.xml");
+  const auto simulation =
+      test::load(std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training/1_sylvian_fissure.xml");
   ASSERT_TRUE(simulation);
   simulation->step();
   int rows = 0;

@@ -287,8 +287,8 @@ int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options
                "this core, Gflop/s: peak {:.0f} (single {:.0f}), dense product of our kernels {:.0f} (single {:.0f}); "
                "reads {:.1f} GB/s\n"
                "%: of the rate of the dense product; of the rate of reading\n",
-               scene, opened.simulation->time(), kernels().name, machine.peak_f64 * 1e-9,
-               machine.peak_f32 * 1e-9, machine.product_f64 * 1e-9, machine.product_f32 * 1e-9, machine.read * 1e-9);
+               scene, opened.simulation->time(), kernels().name, machine.peak_f64 * 1e-9, machine.peak_f32 * 1e-9,
+               machine.product_f64 * 1e-9, machine.product_f32 * 1e-9, machine.read * 1e-9);
     for (const NamedLibrary& l : libraries) fmt::print(context.out, "{}: {}\n", l.name, l.cholmod->blas);
     for (const std::string& remark : remarks) fmt::print(context.out, "{}\n", remark);
   }

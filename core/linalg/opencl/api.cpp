@@ -10,7 +10,7 @@ namespace {
 
 /// False when a function is missing.
 bool find_functions(const DynamicLibrary& library, Api& api) {
-#define INSULA_FIND(name)                                                               \
+#define INSULA_FIND(name)                                                             \
   api.name = library.function<std::remove_pointer_t<decltype(api.name)>>("cl" #name); \
   if (api.name == nullptr) return false;
   INSULA_OPENCL_FUNCTIONS(INSULA_FIND)

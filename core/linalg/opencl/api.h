@@ -15,13 +15,12 @@ struct DeviceFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-#define INSULA_OPENCL_FUNCTIONS(use)                                                                              \
-  use(GetPlatformIDs) use(GetPlatformInfo) use(GetDeviceIDs) use(GetDeviceInfo) use(CreateContext)                \
-      use(ReleaseContext) use(CreateCommandQueue) use(ReleaseCommandQueue) use(CreateProgramWithSource)           \
-          use(BuildProgram) use(GetProgramBuildInfo) use(ReleaseProgram) use(CreateKernel) use(ReleaseKernel)     \
-              use(SetKernelArg) use(CreateBuffer) use(ReleaseMemObject) use(EnqueueNDRangeKernel)                 \
-                  use(EnqueueWriteBuffer) use(EnqueueReadBuffer) use(EnqueueCopyBuffer) use(EnqueueFillBuffer)    \
-                      use(Flush) use(Finish)
+#define INSULA_OPENCL_FUNCTIONS(use)                                                                                   \
+  use(GetPlatformIDs) use(GetPlatformInfo) use(GetDeviceIDs) use(GetDeviceInfo) use(CreateContext) use(ReleaseContext) \
+      use(CreateCommandQueue) use(ReleaseCommandQueue) use(CreateProgramWithSource) use(BuildProgram)                  \
+          use(GetProgramBuildInfo) use(ReleaseProgram) use(CreateKernel) use(ReleaseKernel) use(SetKernelArg)          \
+              use(CreateBuffer) use(ReleaseMemObject) use(EnqueueNDRangeKernel) use(EnqueueWriteBuffer)                \
+                  use(EnqueueReadBuffer) use(EnqueueCopyBuffer) use(EnqueueFillBuffer) use(Flush) use(Finish)
 
 struct Api {
 #define INSULA_DECLARE(name) decltype(&::cl##name) name = nullptr;

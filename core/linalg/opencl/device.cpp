@@ -11,10 +11,10 @@
 namespace insula::opencl {
 namespace {
 
-constexpr std::array kernel_names{"scatter",        "assemble",        "update_block",  "factor_diagonal",
-                                  "solve_block",    "subtract_update", "forward_one",   "backward_one",
-                                  "forward_own",    "forward_below",   "multiply_rows", "multiply_load",
-                                  "add_parts",      "combine"};
+constexpr std::array kernel_names{"scatter",     "assemble",        "update_block",  "factor_diagonal",
+                                  "solve_block", "subtract_update", "forward_one",   "backward_one",
+                                  "forward_own", "forward_below",   "multiply_rows", "multiply_load",
+                                  "add_parts",   "combine"};
 static_assert(kernel_names.size() == std::size_t(Kernel::count));
 
 /// Zero when the device does not say it.

@@ -10,9 +10,9 @@
 
 namespace insula::opencl {
 
-constexpr int tile = 32;        ///< edge of the dense blocks that one group computes
-constexpr int chunk = 16;       ///< columns that a group reads at once
-constexpr int group = 64;       ///< items of a group; each computes 4 x 4 numbers of a tile
+constexpr int tile = 32;         ///< edge of the dense blocks that one group computes
+constexpr int chunk = 16;        ///< columns that a group reads at once
+constexpr int group = 64;        ///< items of a group; each computes 4 x 4 numbers of a tile
 constexpr int line_group = 256;  ///< items of a group that works on one right-hand side
 
 struct FoundDevice {

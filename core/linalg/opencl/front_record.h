@@ -17,9 +17,9 @@ typedef struct {
   int first;            ///< first own column, permuted order
   int own, rows;        ///< own columns; all rows
   int lda, ldu;
-  int map;      ///< places of the rows below in the parent's rows, one number a node
-  int index;    ///< all rows in permuted order, one number a node
-  int carried;  ///< of the rows below, among the rows below of its level
+  int map;                           ///< places of the rows below in the parent's rows, one number a node
+  int index;                         ///< all rows in permuted order, one number a node
+  int carried;                       ///< of the rows below, among the rows below of its level
   int children_begin, children_end;  ///< in the list of children
 } FrontRecord;
 

@@ -184,8 +184,7 @@ void OpenclCholesky::read_compliance() {
 
 void OpenclCholesky::add_free_motion(const BodyRows& rows, double* delta) const {
   if (rows_.columns == 0 || e_.nodes == 0 || !loaded_) return;
-  for (std::size_t c = 0; c < rows_.order.size(); ++c)
-    delta[rows.row[std::size_t(rows_.order[c])]] += rows_.of_load[c];
+  for (std::size_t c = 0; c < rows_.order.size(); ++c) delta[rows.row[std::size_t(rows_.order[c])]] += rows_.of_load[c];
 }
 
 void OpenclCholesky::add_compliance(const BodyRows& rows, double* w, int stride) {

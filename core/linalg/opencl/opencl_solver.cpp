@@ -38,7 +38,8 @@ BodyRows trial_rows(int nodes) {
   h.clear();
   for (int r = 0; r < rows; ++r) {
     h.open(r);
-    for (int k = 0; k < nodes_of_row; ++k) h.add(int((std::int64_t(r) * nodes / rows + k) % nodes), Vec3(1, 0.5, -0.25));
+    for (int k = 0; k < nodes_of_row; ++k)
+      h.add(int((std::int64_t(r) * nodes / rows + k) % nodes), Vec3(1, 0.5, -0.25));
   }
   return h;
 }

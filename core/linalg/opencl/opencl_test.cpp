@@ -113,8 +113,8 @@ std::vector<std::pair<int, int>> box(int side) {
   return out;
 }
 
-// Patterns at the ends of what can happen: nothing coupled, everything coupled (one supernode of several tiles), a chain
-// (a tall tree), a star (one parent with many children), two bodies in one matrix, and a box.
+// Patterns at the ends of what can happen: nothing coupled, everything coupled (one supernode of several tiles), a
+// chain (a tall tree), a star (one parent with many children), two bodies in one matrix, and a box.
 TEST_F(OpenclSolver, AgreesWithTheProcessorOnEveryPattern) {
   std::vector<std::pair<int, int>> all, chain, star, two;
   for (int i = 0; i < 55; ++i)
@@ -124,9 +124,8 @@ TEST_F(OpenclSolver, AgreesWithTheProcessorOnEveryPattern) {
   for (int i = 1; i < 60; ++i)
     if (i != 30) two.emplace_back(i - 1, i);
   const std::vector<std::tuple<const char*, int, std::vector<std::pair<int, int>>>> patterns = {
-      {"one node", 1, {}}, {"nothing coupled", 40, {}}, {"one supernode", 55, all},
-      {"chain", 300, chain}, {"star", 150, star},       {"two bodies", 60, two},
-      {"box", 729, box(9)}};
+      {"one node", 1, {}}, {"nothing coupled", 40, {}}, {"one supernode", 55, all}, {"chain", 300, chain},
+      {"star", 150, star}, {"two bodies", 60, two},     {"box", 729, box(9)}};
   for (const auto& [name, nodes, couplings] : patterns) {
     const BlockMatrix a = filled(nodes, couplings);
     const auto processor = make_direct_solver(false);
@@ -173,8 +172,8 @@ TEST_F(OpenclSolver, MovesAChainBetweenWallsAsTheClosedFormSays) {
   for (int r = 0; r < m; ++r)
     for (int c = 0; c < m; ++c) {
       const double i = 3 * std::min(r, c) + 1, j = 3 * std::max(r, c) + 1;
-      EXPECT_TRUE(held("W of a chain on a device", std::abs(w[std::size_t(r * m + c)] - i * (n - j) / (n * k)), n / k,
-                       1e-13));
+      EXPECT_TRUE(
+          held("W of a chain on a device", std::abs(w[std::size_t(r * m + c)] - i * (n - j) / (n * k)), n / k, 1e-13));
     }
 }
 

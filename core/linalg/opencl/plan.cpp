@@ -78,7 +78,8 @@ void Plan::add_tasks(Level& level) {
   // A front without children has nothing to add, but its update is cleared all the same.
   range(level.assemble, level.fronts, [this](int s, const FrontRecord& f) {
     if (f.children_begin == f.children_end && f.rows == f.own) return;
-    for (int a = 0; a < f.rows / 3; a += nodes_of_task) tasks.push_back({s, a, std::min(a + nodes_of_task, f.rows / 3)});
+    for (int a = 0; a < f.rows / 3; a += nodes_of_task)
+      tasks.push_back({s, a, std::min(a + nodes_of_task, f.rows / 3)});
   });
   range(level.subtract, level.fronts, [this](int s, const FrontRecord& f) {
     for (int b = 0; b < f.rows - f.own; b += tile)

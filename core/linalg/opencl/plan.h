@@ -37,11 +37,11 @@ struct Plan {
   std::vector<Level> levels;  ///< the deepest first
   std::vector<Task> tasks;
   std::vector<int> children;
-  std::vector<int> diagonal;                 ///< permuted node -> slot of its diagonal block
-  std::vector<record_long> scatter_target;   ///< of each block of A, in the panels
-  std::vector<std::array<int, 4>> scatter;   ///< its slot, leading dimension, whether transposed, 0
+  std::vector<int> diagonal;                      ///< permuted node -> slot of its diagonal block
+  std::vector<record_long> scatter_target;        ///< of each block of A, in the panels
+  std::vector<std::array<int, 4>> scatter;        ///< its slot, leading dimension, whether transposed, 0
   record_long update_size = 0, inverse_size = 0;  ///< largest of a level; of all fronts, scalars
-  int carried_rows = 0;                      ///< largest of a level
+  int carried_rows = 0;                           ///< largest of a level
 
  private:
   void place(const Elimination& e);
