@@ -29,6 +29,8 @@ find_library(LCM_LIBRARY lcm REQUIRED)
 find_path(LCM_INCLUDE lcm/lcm.h REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+# The headers alone: the library is opened where a scene asks for a device. Without them, there is no such solver.
+find_path(OPENCL_INCLUDE CL/cl.h)
 # The generator that belongs to the installed headers, not one that a Python environment put first in the path.
 find_program(LCM_GEN lcm-gen HINTS /usr/bin NO_DEFAULT_PATH)
 find_program(LCM_GEN lcm-gen REQUIRED)

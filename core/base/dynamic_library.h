@@ -18,6 +18,8 @@ class DynamicLibrary {
  public:
   /// Looks for nothing but this file. Afterwards either loaded() holds or error() says why not.
   explicit DynamicLibrary(const std::filesystem::path& file);
+  /// The library of that name and version, without prefix and ending, from the system's folders.
+  static DynamicLibrary of_system(std::string_view name, int version);
 
   bool loaded() const { return handle_ != nullptr; }
   const std::string& error() const { return error_; }
@@ -29,6 +31,7 @@ class DynamicLibrary {
   void unload();
 
  private:
+  DynamicLibrary() = default;
   void* address(const char* name) const;
 
   void* handle_ = nullptr;

@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/linalg/asynchronous_solver.h"
 #include "core/linalg/direct_solver.h"
+#include "core/linalg/opencl_solver.h"
 
 namespace insula {
 
@@ -65,8 +66,7 @@ void DeformableBody::connect(PrepareContext& context) {
         error(context, "node " + std::to_string(i) + " has no mass; a force model with a density is needed");
       return;
     }
-  if (solver_kind.is("asynchronous")) solver_ = std::make_unique<AsynchronousSolver>(solver_tolerance());
-  else solver_ = make_direct_solver(solver_kind.is("single"));
+  make_solver(context);
   solver_->analyse(a_);
   start_retardation_times();
   force_ = VecX::Zero(3 * nodes());
@@ -74,6 +74,18 @@ void DeformableBody::connect(PrepareContext& context) {
   turn_.assign(std::size_t(free_count_), Quat::Identity());
   rotation_.assign(std::size_t(free_count_), Mat3::Identity());
   around_ = rotation_;
+}
+
+void DeformableBody::make_solver(PrepareContext& context) {
+  if (solver_kind.is("asynchronous")) solver_ = std::make_unique<AsynchronousSolver>(solver_tolerance());
+  else if (solver_kind.is("faster")) solver_ = make_faster_solver(a_);
+  else solver_ = make_direct_solver(solver_kind.is("single"));
+  if (!solver_kind.is("opencl")) return;
+  try {
+    solver_ = make_opencl_solver();
+  } catch (const NoDevice& e) {
+    error(context, std::string(e.what()) + R"(; solver="faster" uses a device only where there is one)");
+  }
 }
 
 /// Adds the model's couplings to `pairs`. Couplings with invalid nodes are reported and left out.

@@ -32,10 +32,11 @@ class DeformableBody : public DynamicBody {
       this,
       {.name = "solver",
        .fallback = "direct",
-       .choices = {"direct", "single", "asynchronous"},
+       .choices = {"direct", "single", "asynchronous", "opencl", "faster"},
        .doc =
            "how the body's system is solved: a factor made anew when the tissue has changed shape, in double or single "
-           "precision, or for large bodies conjugate gradients with a factor that is made in the background"}};
+           "precision, or for large bodies conjugate gradients with a factor that is made in the background; opencl: "
+           "as direct on an OpenCL device; faster: direct or opencl, as a short trial at the start finds"}};
   Param<Length> solver_tolerance{
       this,
       {.name = "solver_tolerance",
@@ -131,6 +132,7 @@ class DeformableBody : public DynamicBody {
   BlockMatrix damping_matrix_;       ///< D as it was last assembled; no nodes if there is none
   VecX packed_v_, damped_load_;      ///< of the free nodes
 
+  void make_solver(PrepareContext& context);
   void check_couplings(PrepareContext& context, const ForceModel& model, std::vector<std::pair<int, int>>& pairs) const;
   void bind(PrepareContext& context, ForceModel& model);
   void add_damping(double h, bool fresh);

@@ -23,6 +23,11 @@ struct SceneEdit {
 LoadResult load_scene_edited(std::string_view text, const std::filesystem::path& file, const Registry& registry,
                              const std::vector<SceneEdit>& edits, double time_step_s = 0);
 
+/// load_scene_with_exercise_of() with these values.
+LoadResult load_scene_edited_with_exercise_of(const std::filesystem::path& rules, const std::filesystem::path& file,
+                                              const Registry& registry, const std::vector<SceneEdit>& edits,
+                                              double time_step_s = 0);
+
 /// Sets parameters in an expanded scene. A component without an id is called by its element and ordinal, as in reports.
 void apply_edits(ExpandedScene& tree, const std::vector<SceneEdit>& edits, Diagnostics& diagnostics);
 

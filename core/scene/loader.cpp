@@ -85,10 +85,16 @@ LoadResult load_scene(const std::filesystem::path& file, const Registry& registr
 
 LoadResult load_scene_with_exercise_of(const std::filesystem::path& rules, const std::filesystem::path& file,
                                        const Registry& registry, double time_step_s) {
+  return load_scene_edited_with_exercise_of(rules, file, registry, {}, time_step_s);
+}
+
+LoadResult load_scene_edited_with_exercise_of(const std::filesystem::path& rules, const std::filesystem::path& file,
+                                              const Registry& registry, const std::vector<SceneEdit>& edits,
+                                              double time_step_s) {
   LoadResult result;
   std::string text;
   if (!read_scene(file, text, result)) return result;
-  return load_expanded(text, file, registry, time_step_s, rules);
+  return load_expanded(text, file, registry, time_step_s, rules, edits);
 }
 
 LoadResult load_scene_edited(std::string_view text, const std::filesystem::path& file, const Registry& registry,

@@ -174,9 +174,6 @@ struct SimulationResult {
 /// Loads, prepares and connects a scene. time_step_s: in place of its own, 0: as written.
 SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads = 0,
                                  double time_step_s = 0);
-/// The same with the exercise of another scene (load_scene_with_exercise_of()).
-SimulationResult load_simulation_with_exercise_of(const std::filesystem::path& rules, const std::filesystem::path& file,
-                                                  const Registry& registry, int threads = 0, double time_step_s = 0);
 SimulationResult load_simulation_text(std::string_view text, const std::filesystem::path& virtual_path,
                                       const Registry& registry, int threads = 0);
 

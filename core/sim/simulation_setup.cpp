@@ -269,11 +269,6 @@ SimulationResult load_simulation(const std::filesystem::path& file, const Regist
   return connect(load_scene(file, registry, time_step_s), threads);
 }
 
-SimulationResult load_simulation_with_exercise_of(const std::filesystem::path& rules, const std::filesystem::path& file,
-                                                  const Registry& registry, int threads, double time_step_s) {
-  return connect(load_scene_with_exercise_of(rules, file, registry, time_step_s), threads);
-}
-
 SimulationResult load_simulation_text(std::string_view text, const std::filesystem::path& virtual_path,
                                       const Registry& registry, int threads) {
   return connect(load_scene_text(text, virtual_path, registry), threads);

@@ -71,7 +71,12 @@ int cmd_rerun(const CommandContext& context, const RerunOptions& options) {
       context.out.flush();
     };
     result = rerun(session, context.registry, settings, after, [&](const Simulation& s) { report.write(s); });
-    if (!result.same_instructions)
+    for (const std::string& device : result.missing_devices)
+      fmt::print(context.out,
+                 "recorded on a device that is not here, rerun on the processor: the bits differ, values are compared "
+                 "({})\n",
+                 device);
+    if (session.about("instruction_set") != session::instruction_set())
       fmt::print(context.out, "recorded with {} instructions, rerun with {}: the bits differ, values are compared\n",
                  session.about("instruction_set"), session::instruction_set());
   } catch (const InputError& e) {

@@ -10,6 +10,7 @@
 #include "core/base/input_error.h"
 #include "engine/session/session_files.h"
 #include "engine/session/session_format.h"
+#include "engine/session/solver_devices.h"
 
 namespace insula {
 namespace fs = std::filesystem;
@@ -77,14 +78,19 @@ RerunResult rerun(SessionReader& session, const Registry& registry, const RerunS
   const fs::path scene = restore_scene_files(session.container(), places, scratch.path());
   const double step_s = session.step_s();
   if (!(step_s >= 0 && step_s < 1)) throw InputError("the recording's step is out of range");
-  SimulationResult loaded = load_simulation_with_exercise_of(settings.rules, scene, registry, settings.threads, step_s);
-  if (!loaded.simulation)
+  const session::RepeatedSolvers solvers = session::repeat_solvers(session.container().descriptions().at("session"));
+  LoadResult loaded = load_scene_edited_with_exercise_of(settings.rules, scene, registry, solvers.edits, step_s);
+  std::unique_ptr<Simulation> made;
+  if (loaded.scene) made = std::make_unique<Simulation>(std::move(loaded.scene), loaded.diagnostics, settings.threads);
+  if (!made || !loaded.diagnostics.ok())
     throw InputError(std::string(settings.rules.empty() ? "the recorded scene has" : "with these rules the scene has") +
                      " errors:\n" + loaded.diagnostics.format());
-  Simulation& simulation = *loaded.simulation;
+  Simulation& simulation = *made;
 
   RerunResult result;
-  result.same_instructions = session.about("instruction_set") == session::instruction_set();
+  result.missing_devices = solvers.missing;
+  result.same_instructions =
+      session.about("instruction_set") == session::instruction_set() && result.missing_devices.empty();
   if (result.same_instructions && session.about("start_hash") != session::hex(simulation.state_hash())) {
     result.broken = "the scene begins in another state than the recorded one: it was recorded by another version";
     return result;

@@ -18,9 +18,10 @@ struct RerunResult {
   std::int64_t compared = 0;      ///< states of the recording that were reached
   std::int64_t different = 0;     ///< those of them with other bits; with other instructions: beyond the tolerance
   double first_different_s = -1;  ///< time in the recording of the first one, s; negative: none
-  bool same_instructions = true;  ///< the recording's instruction set; with another one the bits differ
-  double largest_change = 0;      ///< with other instructions: of energy and the bodies' sums, over their size
-  std::string broken;             ///< why the rerun ended early; empty: it did not
+  bool same_instructions = true;  ///< the recording's instruction set and devices; with others the bits differ
+  std::vector<std::string> missing_devices = {};  ///< body and device of the recording that this machine does not have
+  double largest_change = 0;  ///< with other instructions: of energy and the bodies' sums, over their size
+  std::string broken;         ///< why the rerun ended early; empty: it did not
   /// Whether every state was reached and is the same.
   bool good() const { return broken.empty() && compared > 0 && different == 0; }
 };

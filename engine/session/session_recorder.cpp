@@ -18,6 +18,7 @@
 #include "engine/reports/metrics_report.h"
 #include "engine/session/session_files.h"
 #include "engine/session/session_format.h"
+#include "engine/session/solver_devices.h"
 
 namespace insula {
 namespace {
@@ -68,6 +69,7 @@ SessionRecorder::SessionRecorder(const std::filesystem::path& file, const Simula
                      {"instruction_set", session::instruction_set()},
                      {"start_hash", session::hex(simulation.state_hash())}};
   for (const auto& [name, value] : about.fields) text[session::field_prefix + name] = value;
+  session::describe_solvers(simulation, text);
   if (const Complications* c = simulation.complications()) text["seed"] = std::to_string(c->drawn_from());
   out_->describe("session", text);
   put_scene_files(*out_, files);

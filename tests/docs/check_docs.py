@@ -35,7 +35,7 @@ class Checker:
         self.folders = {p.name for p in source.iterdir() if p.is_dir() and p.name != "build"}
         self.tests = set()
         for folder in ("core", "plugins", "haptic_server", "engine", "viewer/gateway", "tests", "tools"):
-            for file in (source / folder).rglob("*.cpp"):
+            for file in [*(source / folder).rglob("*.cpp"), *(source / folder).rglob("*_for_test.h")]:
                 self.tests.update(DECLARED.findall(file.read_text(encoding="utf-8", errors="replace")))
         script = (source / "insula").read_text(encoding="utf-8")
         self.script_usage = [l for l in script.split("\n") if l.startswith("  ./insula ")]

@@ -23,7 +23,7 @@ STANDARD = set("""
     cassert cctype cerrno cfenv cfloat cinttypes climits clocale cmath csetjmp csignal cstdarg cstddef cstdint cstdio
     cstdlib cstring ctime cuchar cwchar cwctype""".split())
 LIBRARIES = re.compile(r"""(Eigen|fmt|spdlog|nlohmann|gtest|assimp|urdf_world|urdf_parser|urdf_model|console_bridge
-    |insula_lcm|lcm|fast_float)/ | (cholmod|expat|zlib|zstd)\.h$""", re.X)
+    |insula_lcm|lcm|fast_float|CL)/ | (cholmod|expat|zlib|zstd)\.h$""", re.X)
 # Of a processor or of a compiler: only where #if says that it is there.
 CONDITIONAL = {"immintrin.h", "xmmintrin.h", "cpuid.h", "sanitizer/lsan_interface.h"}
 POSIX = """

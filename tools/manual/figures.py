@@ -69,7 +69,8 @@ ERRORS = {  # section of the page: (picture, {program: tests that keep errors})
         {
             "physics_tests": "ImplicitEuler.RigidTranslation*:ImplicitEuler.FreeBody*:ImplicitEuler.Compliance*:"
             "Asynchronous.ForcesAre*",
-            "core_tests": "Direct/*.SolvesAs*:Direct/*.ComplianceAnd*:AsynchronousSolver.CorrectionKnows*",
+            "core_tests": "Processor/BodySolverContract/*.SolvesAs*:Processor/BodySolverContract/*.ComplianceAnd*:"
+            "AsynchronousSolver.CorrectionKnows*",
         },
     ),
     "Constraint solver": (

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/linalg/opencl_solver.h"
 #include "tools/workbench/reference_solvers.h"
 #include "tools/workbench/workbench.h"
 
@@ -37,7 +38,8 @@ TEST(BenchSolvers, EverySolverAgreesOnTheSameStep) {
   for (const auto& body : j["bodies"]) {
     rows += body["rows"].get<int>();
     EXPECT_LE(body["rows"].get<int>(), 12);
-    ASSERT_EQ(body["solvers"].size(), 3 + 2 * j["blas"].size());
+    const std::size_t devices = opencl_devices().empty() ? 0 : 1;
+    ASSERT_EQ(body["solvers"].size(), 3 + devices + 2 * j["blas"].size());
     for (const auto& s : body["solvers"]) {
       const std::string name = s["solver"];
       const double tolerance = name.find("single") != std::string::npos ? 1e-4 : 1e-11;
@@ -65,6 +67,28 @@ TEST(BenchSolvers, EverySolverAgreesOnTheSameStep) {
   const bool open =
       std::any_of(j["blas"].begin(), j["blas"].end(), [](const auto& b) { return b["name"] == "OpenBLAS"; });
   EXPECT_EQ(j["remarks"].dump().find("OpenBLAS is not installed") == std::string::npos, open) << j["remarks"];
+}
+
+// A brick in place of a scene: our own solvers, and a device where there is one.
+TEST(BenchSolvers, ABrickOfSoManyNodesIsMeasured) {
+  Registry registry;
+  register_builtin(registry);
+  std::ostringstream out, err;
+  BenchOptions options;
+  options.threads = 1;
+  options.json = true;
+  options.nodes = 343;
+  ASSERT_EQ(cmd_bench_solvers({registry, out, err}, options), 0) << err.str();
+  const auto j = nlohmann::json::parse(out.str());
+  ASSERT_EQ(j["bodies"].size(), 2U);
+  EXPECT_EQ(j["bodies"][0]["nodes"].get<int>(), 343 - 49) << "one layer is fixed";
+  EXPECT_GT(j["bodies"][0]["rows"].get<int>(), 20);
+  const std::vector<std::string> devices = opencl_devices();
+  ASSERT_EQ(j["bodies"][0]["solvers"].size(), devices.empty() ? 2U : 3U);
+  if (!devices.empty()) {
+    EXPECT_EQ(j["bodies"][0]["solvers"][2]["solver"], "OpenCL, " + devices.front());
+  }
+  for (const auto& s : j["bodies"][0]["solvers"]) EXPECT_LT(s["w_error"].get<double>(), 1e-4);
 }
 
 TEST(BenchSolvers, AFolderWithoutABlasIsRefused) {

@@ -7,10 +7,12 @@
 
 #include "core/linalg/direct_solver.h"
 #include "core/linalg/kernels.h"
+#include "core/linalg/opencl_solver.h"
 #include "core/mechanics/deformable_body.h"
 #include "tools/workbench/machine_rates.h"
 #include "tools/workbench/measured_run.h"
 #include "tools/workbench/reference_solvers.h"
+#include "tools/workbench/scaling_scene.h"
 #include "tools/workbench/workbench.h"
 
 namespace insula {
@@ -82,6 +84,17 @@ Recorded record(const DeformableBody& body, int max_rows) {
   return out;
 }
 
+/// A brick of about that many nodes, with a small one above it and taut fibres between them.
+OpenedRun open_brick(const CommandContext& context, const BenchOptions& options) {
+  Bricks bricks;
+  bricks.cells = std::max(2, int(std::lround(std::cbrt(double(options.nodes)))) - 1);
+  bricks.upper_cells = 4;
+  bricks.fibres = 40;
+  OpenedRun out;
+  out.simulation = brick_scene(bricks, context.registry, options.threads);
+  return out;
+}
+
 struct NamedSolver {
   std::string name;
   std::unique_ptr<ComplianceSolver> solver;
@@ -105,8 +118,8 @@ double milliseconds(F&& f) {
 // In rounds, all solvers in each round: what disturbs the machine disturbs them all. The fastest run counts.
 std::vector<Measured> measure(const Recorded& step, const std::vector<NamedSolver>& solvers) {
   constexpr double budget_ms = 1000;  // of each solver
-  constexpr int least = 3, most = 300;
   const BlockMatrix& a = step.body->system();
+  const int least = a.nodes() > 20000 ? 2 : 3, most = 300;
   const std::vector<int>& node = step.body->free_of_node();
   const int m = step.rows.count(), stride = std::max(8, (m + 7) & ~7);
   std::vector<Measured> out(solvers.size());
@@ -179,10 +192,13 @@ std::vector<NamedLibrary> load_libraries(const std::filesystem::path& extra, std
   return out;
 }
 
-std::vector<NamedSolver> all_solvers(const std::vector<NamedLibrary>& libraries) {
+std::vector<NamedSolver> all_solvers(const std::vector<NamedLibrary>& libraries, bool ours_only) {
   std::vector<NamedSolver> out;
   out.push_back({"direct", make_direct_solver(false)});
   out.push_back({"direct, single precision", make_direct_solver(true)});
+  if (const std::vector<std::string> devices = opencl_devices(); !devices.empty())
+    out.push_back({"OpenCL, " + devices.front(), make_opencl_solver()});
+  if (ours_only) return out;
   for (const NamedLibrary& l : libraries) {
     out.push_back({"CHOLMOD, " + l.name, make_cholmod_solver(l.cholmod, ReferenceW::full)});
     out.push_back({"CHOLMOD, " + l.name + ", forward W", make_cholmod_solver(l.cholmod, ReferenceW::forward)});
@@ -238,12 +254,12 @@ void print(std::ostream& out, const Recorded& step, const std::vector<Measured>&
 }  // namespace
 
 int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options) {
-  const OpenedRun opened = open_for_measuring(context, options);
+  const OpenedRun opened = options.nodes > 0 ? open_brick(context, options) : open_for_measuring(context, options);
   if (!opened.simulation) return 2;
   std::vector<std::string> remarks;
   std::vector<NamedLibrary> libraries;
   try {
-    libraries = load_libraries(options.blas, remarks);
+    if (options.nodes == 0) libraries = load_libraries(options.blas, remarks);
   } catch (const std::exception& e) {
     context.err << "error: CHOLMOD cannot be loaded on another BLAS: " << e.what() << '\n';
     return 2;
@@ -253,7 +269,9 @@ int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options
 
   const MachineRates machine = measure_machine();
   nlohmann::json j;
-  j["scene"] = options.scene.string();
+  const std::string scene =
+      options.nodes > 0 ? fmt::format("a brick of about {} nodes", options.nodes) : options.scene.string();
+  j["scene"] = scene;
   j["time_s"] = opened.simulation->time();
   j["kernels"] = kernels().name;
   for (const NamedLibrary& l : libraries) j["blas"].push_back({{"name", l.name}, {"library", l.cholmod->blas}});
@@ -269,8 +287,8 @@ int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options
                "this core, Gflop/s: peak {:.0f} (single {:.0f}), dense product of our kernels {:.0f} (single {:.0f}); "
                "reads {:.1f} GB/s\n"
                "%: of the rate of the dense product; of the rate of reading\n",
-               options.scene.string(), opened.simulation->time(), kernels().name, machine.peak_f64 * 1e-9,
-               machine.peak_f32 * 1e-9, machine.product_f64 * 1e-9, machine.product_f32 * 1e-9, machine.read * 1e-9);
+               scene, opened.simulation->time(), kernels().name, machine.peak_f64 * 1e-9, machine.peak_f32 * 1e-9,
+               machine.product_f64 * 1e-9, machine.product_f32 * 1e-9, machine.read * 1e-9);
     for (const NamedLibrary& l : libraries) fmt::print(context.out, "{}: {}\n", l.name, l.cholmod->blas);
     for (const std::string& remark : remarks) fmt::print(context.out, "{}\n", remark);
   }
@@ -278,7 +296,7 @@ int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options
     const auto* body = dynamic_cast<const DeformableBody*>(b);
     if (!body || body->system().nodes() == 0) continue;
     const Recorded step = record(*body, options.rows);
-    const std::vector<Measured> all = measure(step, all_solvers(libraries));
+    const std::vector<Measured> all = measure(step, all_solvers(libraries, options.nodes > 0));
     nlohmann::json of_body{{"body", body->id}, {"nodes", body->system().nodes()}, {"rows", step.rows.count()}};
     for (const Measured& s : all) of_body["solvers"].push_back(as_json(s, machine));
     j["bodies"].push_back(of_body);

@@ -88,7 +88,7 @@ void choose_bench(Options& c) {
     c.chosen = [&](const auto& x) { return insula::cmd_bench_scaling(x, c.scaling); };
   } else if (!c.bench.problems.empty()) {
     c.chosen = [&](const auto& x) { return insula::cmd_bench_problems(x, c.bench); };
-  } else if (c.bench.scene.empty()) {
+  } else if (c.bench.scene.empty() && !(c.bench.solvers && c.bench.nodes > 0)) {
     throw CLI::RequiredError("scene (or --scaling)");
   } else if (c.measure_haptics) {
     c.haptics.scene = c.bench.scene;
@@ -131,6 +131,11 @@ void add_bench(Options& c) {
   command->add_flag("--solvers", o.solvers, "compare the solvers on the matrices and rows of the step at --from");
   command->add_option("--rows", o.rows, "with --solvers: so many rows of each body at most; 0 takes all")
       ->check(at_least(0));
+  command
+      ->add_option("--nodes", o.nodes,
+                   "with --solvers, without a scene: on a brick of about so many nodes, our own solvers alone")
+      ->check(CLI::Range(27, 200000))
+      ->excludes(scene);
   command->add_option("--blas", o.blas, "with --solvers: CHOLMOD also on this folder's libblas.so.3 and liblapack.so.3")
       ->check(CLI::ExistingDirectory);
   auto* record =

@@ -38,6 +38,7 @@ struct BenchOptions {
   bool frames = false;             ///< measure the viewer's frames instead
   bool recording = false;          ///< measure a session's recording instead
   bool solvers = false;            ///< compare solvers instead
+  int nodes = 0;                   ///< of a brick in place of a scene, for the comparison of solvers; 0: the scene
   int rows = 0;                    ///< of each body, for the comparison of solvers; 0: all of them
   std::filesystem::path blas;      ///< folder with a further libblas.so.3 for the comparison of solvers; empty: none
   std::filesystem::path record;    ///< folder for the steps' constraint problems, in place of measuring

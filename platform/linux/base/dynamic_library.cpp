@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <fstream>
+#include <string>
 
 namespace insula {
 
@@ -24,6 +25,16 @@ DynamicLibrary::DynamicLibrary(const std::filesystem::path& file) {
   if (handle_ != nullptr) return;
   const char* why = ::dlerror();
   error_ = why != nullptr ? why : "unknown reason";
+}
+
+DynamicLibrary DynamicLibrary::of_system(std::string_view name, int version) {
+  DynamicLibrary library;
+  const std::string file = "lib" + std::string(name) + ".so." + std::to_string(version);
+  library.handle_ = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library.handle_ != nullptr) return library;
+  const char* why = ::dlerror();
+  library.error_ = why != nullptr ? why : "unknown reason";
+  return library;
 }
 
 void* DynamicLibrary::address(const char* name) const { return handle_ != nullptr ? ::dlsym(handle_, name) : nullptr; }
