@@ -35,6 +35,8 @@ void add_case_commands(CommandLine& line) {
       ->required()
       ->check(CLI::ExistingPath);
   copy->add_option("folder", o->to, "to be made; its name is that of the copy")->required();
+  auto* begun = add("new", "begin a scene from nothing, with example meshes beside it", cmd_cases_new);
+  begun->add_option("folder", o->to, "to be made; its name is that of the scene")->required();
   add("remove", "remove a case that was added", cmd_cases_remove)
       ->add_option("name", o->name, "of the case")
       ->required();

@@ -3,6 +3,8 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "core/base/input_error.h"
 #include "core/base/removed_at_end.h"
@@ -159,6 +161,30 @@ int cmd_cases_copy(const CommandContext& context, const CasesOptions& o) {
     }
     const PackedCase copied = unpack_case(archive.path(), beside);
     fmt::print(context.out, "{}: {} scenes, {} files\n", to.string(), copied.scenes.size(), copied.files);
+    return 0;
+  });
+}
+
+int cmd_cases_new(const CommandContext& context, const CasesOptions& o) {
+  return refusing(context, [&] {
+    const fs::path to = fs::absolute(o.to).lexically_normal();
+    const std::string name = to.filename().string(), scene = name + ".xml";
+    if (!is_case_name(name))
+      throw InputError("the name of a scene has letters, digits, _ and - only, 64 at most: \"" + name + "\" has not");
+    if (fs::exists(to)) throw InputError(to.string() + " exists already");
+    const fs::path meshes = fs::path("meshes") / "examples";
+    fs::create_directories(to / meshes);
+    for (const auto& file : fs::directory_iterator(project_folder() / meshes))
+      if (const std::string kind = file.path().extension().string(); kind == ".msh" || kind == ".obj")
+        fs::copy_file(file.path(), to / meshes / file.path().filename());
+    const nlohmann::ordered_json manifest = {
+        {"format", 1}, {"name", name}, {"scenes", {scene}}, {"files", nlohmann::ordered_json::object()}};
+    std::ofstream(to / scene) << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<scene title=\"" << name
+                              << "\">\n</scene>\n";
+    std::ofstream list(to / case_manifest);
+    list << manifest.dump(1) << "\n";
+    if (!list.flush()) throw InputError(to.string() + ": cannot be written");
+    fmt::print(context.out, "{}: a scene without components\n", (to / scene).string());
     return 0;
   });
 }

@@ -16,9 +16,14 @@ The usual energy of hinges (a spring on the angle of each edge) is not used. The
 how the mesh is cut. It is a tenth too small on irregular meshes and a third too small on some regular ones.
 Refinement does not improve it.
 
-Several membranes share a shell by `regions`; every triangle has exactly one. Where two membranes meet, each bends its
-own triangles against the common slope, so the border is no hinge. A free rim carries no moment. Fixed nodes keep
-their position, not their slope: fix two rows of them to clamp a rim. Caps carry no wall.
+Several membranes share a shell by `regions`; every triangle has exactly one. A membrane with `spots` is a part of
+those regions, such as a plaque: it lies in place of the membrane without spots that has the region. Each spot begins
+at the triangle nearest to its point and grows over the wall as far as `spot_radius`. Of two membranes with spots, the
+later one counts where both would lie.
+
+Where two membranes meet, each bends its own triangles against the common slope, so the border is no hinge. A free rim
+carries no moment. Fixed nodes keep their position, not their slope: fix two rows of them to clamp a rim. Caps carry no
+wall.
 
 With a prestrain, the wall is under tension in the imaged shape. The prestrain is a strain of each triangle and a
 change of each rest angle. Both are linear in the displacement to the stress-free configuration.
@@ -44,6 +49,14 @@ class Membrane final : public ForceModel {
   Param<std::string> regions{
       this,
       {.name = "regions", .fallback = "", .doc = "regions of the wall it is, separated by blanks; none: all of them"}};
+  Param<std::string> spots{this,
+                           {.name = "spots",
+                            .fallback = "",
+                            .doc = "only parts of those regions, about points of the wall at rest separated by "
+                                   "semicolons: \"12 3 4 mm; 12.5 3 4 mm\"; none: all of them"}};
+  Param<Length> spot_radius{
+      this,
+      {.name = "spot_radius", .fallback = "1 mm", .min = "0.1 mm", .max = "20 mm", .doc = "how far each spot reaches"}};
   Param<Length> thickness{
       this, {.name = "thickness", .fallback = "0.3 mm", .min = "1 um", .max = "10 mm", .doc = "of the wall"}};
   Param<Pressure> young{
@@ -91,13 +104,16 @@ class Membrane final : public ForceModel {
   bool prestrain(const double* u) override;
   double stiffness_damping() const override { return stiffness_time(); }
   double wall_thickness(int region) const override {
-    return std::size_t(region) < own_.size() && owns(region) ? thickness() : 0;
+    return std::size_t(region) < own_.size() && owns(region) && !spotted() ? thickness() : 0;
   }
   void reset() override { bend_.reset(); }
 
  private:
   bool choose_regions(PrepareContext& context, const ShellBody& shell);
   void check_cover(PrepareContext& context, const ShellBody& shell) const;
+  std::vector<char> own_triangles(const ShellBody& shell, const WallTopology& wall, std::string& wrong) const;
+  std::vector<char> meant_triangles(const ShellBody& shell, const WallTopology& wall, std::string& wrong) const;
+  bool spotted() const { return !spots().empty(); }
   bool owns(int region) const { return own_[std::size_t(region)] != 0; }
 
   const ShellBody* shell_ = nullptr;
@@ -142,7 +158,7 @@ void Membrane::check_cover(PrepareContext& context, const ShellBody& shell) cons
   for (std::size_t r = 0; r < names.size(); ++r) {
     const Membrane* owner = nullptr;
     for (const Membrane* m : all) {
-      if (!m->own_[r]) continue;
+      if (!m->own_[r] || m->spotted()) continue;
       if (owner)
         m->error(context, m->regions,
                  in_quotes(names[r]) + " is the wall of " + owner->id + " already; each region has one membrane");
@@ -151,6 +167,40 @@ void Membrane::check_cover(PrepareContext& context, const ShellBody& shell) cons
     if (!owner && used[r]) bare.push_back(names[r]);
   }
   if (!bare.empty()) error(context, "no membrane of this shell is the wall of " + joined(bare));
+}
+
+/// One flag a triangle: it is of its regions, and of its spots if it has any.
+std::vector<char> Membrane::meant_triangles(const ShellBody& shell, const WallTopology& wall,
+                                            std::string& wrong) const {
+  const auto words = split_blanks(regions());
+  std::vector<char> regions_of(shell.model().regions.size(), words.empty());
+  for (const std::string_view word : words)
+    if (const int r = shell.region(word); r >= 0) regions_of[std::size_t(r)] = 1;
+  std::vector<char> out(wall.triangles.size(), 1);
+  if (spotted()) {
+    const std::vector<Vec3> points = read_spots(spots(), wrong);
+    if (!wrong.empty()) return out;
+    out = spot_triangles(wall, shell.rest_nodes(), points, spot_radius(), wrong);
+  }
+  for (std::size_t t = 0; t < out.size(); ++t)
+    if (!regions_of[std::size_t(shell.region_of_triangle(wall.triangles[t]))]) out[t] = 0;
+  return out;
+}
+
+/// Without those that another membrane of the shell takes by its spots.
+std::vector<char> Membrane::own_triangles(const ShellBody& shell, const WallTopology& wall, std::string& wrong) const {
+  std::vector<char> out = meant_triangles(shell, wall, wrong);
+  bool later = false;
+  for (const Membrane* m : shell.children_of<Membrane>()) {
+    if (m == this) later = true;
+    else if (m->spotted() && (later || !spotted())) {
+      std::string told_by_itself;
+      const std::vector<char> taken = m->meant_triangles(shell, wall, told_by_itself);
+      for (std::size_t t = 0; t < out.size(); ++t)
+        if (taken[t] && told_by_itself.empty()) out[t] = 0;
+    }
+  }
+  return out;
 }
 
 void Membrane::attach(PrepareContext& context, DeformableBody& body) {
@@ -166,6 +216,9 @@ void Membrane::attach(PrepareContext& context, DeformableBody& body) {
   shell_ = shell;
   WallTopology wall;
   if (const std::string wrong = wall.build(rest, shell->wall_triangles()); !wrong.empty()) return error(context, wrong);
+  std::string wrong_spots;
+  const std::vector<char> mine = own_triangles(*shell, wall, wrong_spots);
+  if (!wrong_spots.empty()) return error(context, spots, wrong_spots);
   const StretchTriangles::Material material{thickness(), young(), poisson()};
   std::vector<const StretchTriangles::Material*> of_triangle(wall.triangles.size(), nullptr);
   stretch_.clear();
@@ -174,7 +227,7 @@ void Membrane::attach(PrepareContext& context, DeformableBody& body) {
   area_.clear();
   for (std::size_t t = 0; t < wall.triangles.size(); ++t) {
     const auto& v = wall.triangles[t];
-    if (!owns(shell->region_of_triangle(v))) continue;
+    if (!mine[t]) continue;
     of_triangle[t] = &material;
     triangles_.push_back(v);
     of_wall_.push_back(int(t));

@@ -19,6 +19,8 @@ struct Wall {
   double thickness = 1e-3, young = 1e6, poisson = 0.3, density = 1000, added_mass = 0, mass_damping = 0,
          stiffness_damping = 0;
   std::string regions = {};
+  std::string spots = {};
+  double spot_radius = 1e-3;
 };
 
 inline void add_membrane(ShellBody& body, const Wall& w) {
@@ -31,6 +33,8 @@ inline void add_membrane(ShellBody& body, const Wall& w) {
   set_quantity(*m, "mass_damping", w.mass_damping);
   set_quantity(*m, "stiffness_damping", w.stiffness_damping);
   dynamic_cast<Param<std::string>&>(*m->find_param("regions")).set(w.regions);
+  dynamic_cast<Param<std::string>&>(*m->find_param("spots")).set(w.spots);
+  set_quantity(*m, "spot_radius", w.spot_radius);
   // A linear problem is then solved in one step.
   m->find_param("tangent")->assign("patches", {});
   m->id = "membrane#" + std::to_string(body.children.size() + 1);

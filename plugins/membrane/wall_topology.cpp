@@ -1,10 +1,52 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Neighbours of a wall's triangles.
+// Neighbours of a wall's triangles, and what is near along them.
 #include "plugins/membrane/wall_topology.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
+
+#include "core/base/text.h"
+#include "core/model/geometry/triangle_distance.h"
+#include "core/params/param.h"
 
 namespace insula {
+namespace {
+
+struct Corners {
+  Vec3 a, b, c;
+  Vec3 middle() const { return (a + b + c) / 3; }
+  double distance(const Vec3& p) const { return (p - nearest_on_triangle(p, a, b, c)).norm(); }
+};
+
+Corners corners(const WallTopology& wall, const std::vector<Vec3>& nodes, int t) {
+  const auto& v = wall.triangles[std::size_t(t)];
+  return {nodes[std::size_t(v[0])], nodes[std::size_t(v[1])], nodes[std::size_t(v[2])]};
+}
+
+/// Adds the triangles of one spot, from its first one.
+void grow(const WallTopology& wall, const std::vector<Vec3>& nodes, const Vec3& spot, double radius, int first,
+          std::vector<char>& out) {
+  std::vector<char> seen(wall.triangles.size(), 0);
+  std::vector<int> front{first};
+  seen[std::size_t(first)] = 1;
+  while (!front.empty()) {
+    const int t = front.back();
+    front.pop_back();
+    out[std::size_t(t)] = 1;
+    for (const int h : wall.hinge_of[std::size_t(t)]) {
+      if (h < 0) continue;
+      const auto& sides = wall.sides[std::size_t(h)];
+      const int next = sides[0].triangle == t ? sides[1].triangle : sides[0].triangle;
+      if (seen[std::size_t(next)]) continue;
+      seen[std::size_t(next)] = 1;
+      if ((corners(wall, nodes, next).middle() - spot).norm() <= radius) front.push_back(next);
+    }
+  }
+}
+
+}  // namespace
 
 std::string WallTopology::build(const std::vector<Vec3>& nodes, const std::vector<std::array<int, 3>>& wall) {
   triangles = wall;
@@ -59,6 +101,38 @@ std::string WallTopology::build(const std::vector<Vec3>& nodes, const std::vecto
     sides.push_back(s);
   }
   return {};
+}
+
+std::vector<Vec3> read_spots(std::string_view text, std::string& wrong) {
+  std::vector<Vec3> out;
+  while (true) {
+    const std::size_t end = std::min(text.find(';'), text.size());
+    ParamSet alone;
+    Param<Vec<Length>> point(&alone, {.name = "spot", .doc = "a point of the wall"});
+    wrong = point.assign(trim(text.substr(0, end)), {});
+    if (!wrong.empty()) return out;
+    out.push_back(point());
+    if (end == text.size()) return out;
+    text.remove_prefix(end + 1);
+  }
+}
+
+std::vector<char> spot_triangles(const WallTopology& wall, const std::vector<Vec3>& nodes,
+                                 const std::vector<Vec3>& spots, double radius, std::string& wrong) {
+  std::vector<char> out(wall.triangles.size(), 0);
+  for (std::size_t s = 0; s < spots.size(); ++s) {
+    int nearest = -1;
+    double least = std::numeric_limits<double>::max();
+    for (std::size_t t = 0; t < out.size(); ++t)
+      if (const double d = corners(wall, nodes, int(t)).distance(spots[s]); d < least) least = d, nearest = int(t);
+    if (least > radius) {
+      wrong = fmt::format("point {} is {:.2f} mm from the wall, more than spot_radius; is its unit another one?", s + 1,
+                          1e3 * least);
+      return out;
+    }
+    grow(wall, nodes, spots[s], radius, nearest, out);
+  }
+  return out;
 }
 
 }  // namespace insula

@@ -8,6 +8,7 @@
 #include "core/linalg/direct_solver.h"
 #include "core/linalg/opencl_solver.h"
 #include "core/mechanics/deformable_body.h"
+#include "core/scene/loader.h"
 #include "core/testing/block_mesh.h"
 #include "core/testing/example.h"
 #include "core/testing/held.h"

@@ -189,7 +189,8 @@ TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
   std::string said;
   for (const char* out : {"a", "b"})
     ASSERT_EQ(command({"new", "tube", input, "--out", (folder.path() / out).string(), "--vertices", "900", "--plays",
-                       "4", "--site", "basilar tip", "--difficulty", "4"},
+                       "4", "--site", "basilar tip", "--difficulty", "4", "--wall-patch",
+                       "0 0 6 mm, radius=0.8 mm, thickness=0.4 mm, young=2 MPa"},
                       &said),
               0)
         << said;
@@ -206,6 +207,9 @@ TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
     EXPECT_GT(m.step_ms, 0);
     EXPECT_NE(read_file_bytes(file).find("<exercise site=\"basilar tip\" difficulty=\"4\""), std::string::npos) << file;
   }
+  // The scene would be refused if the painted part were not on the placed wall.
+  EXPECT_NE(read_file_bytes(made.path / "artery.xml").find("spot_radius=\"0.8 mm\" thickness=\"0.4 mm\" young=\"2 MPa\""),
+            std::string::npos);
   const std::string report = read_file_bytes(made.path / "report.html");
   for (const char* part : {"<svg", "worst angle", "dome to neck", "room to the frontal", "closed by flat caps",
                            "a step takes", "3_clipping.xml"})

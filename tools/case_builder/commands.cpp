@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <functional>
+#include <iostream>
 #include <optional>
 
 #include "core/base/input_error.h"
@@ -16,6 +17,7 @@
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/paint.h"
 #include "tools/case_builder/place.h"
+#include "tools/case_builder/pose_view.h"
 #include "tools/case_builder/project.h"
 #include "tools/case_builder/region_walls.h"
 #include "tools/case_builder/report.h"
@@ -23,6 +25,7 @@
 #include "tools/case_builder/scenes.h"
 #include "tools/case_builder/unit_options.h"
 #include "tools/case_builder/wall.h"
+#include "tools/case_builder/wall_patches.h"
 
 namespace insula::case_builder {
 namespace {
@@ -35,12 +38,13 @@ struct Line {
   bool on = false;
   bool inspect = false;  ///< a look at the input, no case
   bool clip = false;     ///< a clip is tried
+  bool pose = false;     ///< poses of the vessel are looked at
 };
 
 // Options whose values have a unit. joined_values() joins the words of such a value.
 const std::vector<std::string> with_unit = {
     "--seed", "--around", "--rebuild", "--cut",  "--neck",  "--neck-points", "--inlet", "--keep",
-    "--bleb", "--gap",    "--spin",    "--lift", "--slide", "--turn",        "--unit",  "--brain-unit"};
+    "--bleb", "--gap",    "--spin",    "--lift", "--slide", "--turn",        "--pose", "--unit",  "--brain-unit"};
 
 /// A length or an angle; `take` gets it in the unit option.bare.
 template <class Q>
@@ -171,6 +175,18 @@ void wall_options(CLI::App* app, Options& o) {
          "\"vessels.thickness=0.4 mm\"; may be given again")
       ->take_all()
       ->check(refusal_of<WallChange>(read_wall_change));
+  app->add_option_function<std::vector<std::string>>(
+         "--wall-patch",
+         [&o](const std::vector<std::string>& v) {
+           o.wall_patches.clear();
+           for (const std::string& one : v) o.wall_patches.push_back(read_wall_patch(one));
+         },
+         "a part of the wall about points of it, with a thickness or a stiffness of its own: \"X Y Z mm, radius=1 mm, "
+         "young=7 MPa, thickness=0.5 mm\", with as many points as you like; may be given again")
+      ->take_all()
+      ->check(refusal_of<WallPatch>(read_wall_patch));
+  app->add_flag_callback(
+      "--no-wall-patches", [&o] { o.wall_patches.clear(); }, "take back what --wall-patch has changed");
   app->add_flag_callback(
       "--walls-as-proposed", [&o] { o.walls.clear(); }, "take back what --wall has changed");
 }
@@ -195,6 +211,10 @@ void brain_options(CLI::App* app, Options& o) {
 void place_options(CLI::App* app, Options& o) {
   app->add_option("--approach", o.approach,
                   "the way to the aneurysm, a name of meshes/*/approach.json (default: sylvian)");
+  shape_to(app, "--pose", Shape::motion, o.pose,
+           "where the vessel is moved to, in place of the search: a rotation (its axis times its angle) about the "
+           "origin of your file's frame, then a shift into the frame of the lobes");
+  app->add_flag_callback("--no-pose", [&o] { o.pose.reset(); }, "search for the place again");
   app->add_flag("--in-place", o.in_place, "the input lies in the frame of the lobes (MNI, mm) already");
   app->add_option("--lobes", o.lobes, "folder with lobes of your own, named as in meshes/lobes, in its frame (MNI, mm)")
       ->check(CLI::ExistingDirectory);
@@ -240,6 +260,29 @@ void scene_options(CLI::App* app, Options& o) {
                    .doc = "of the blades about the dome's axis from the surgeon's side"});
 }
 
+/// Those that make no case and change none.
+void look_commands(CLI::App& app, Line& line, Options& o) {
+  auto* look = app.add_subcommand(
+      "inspect", "tell what a file holds and where the neck may be, as JSON, before a case is made of it");
+  look->add_option("input", line.input, "file, or folder of a DICOM series")->required();
+  look->add_option("--out", line.out, "folder that gets what was found, in place of the print");
+  intake_options(look, o);
+  look->callback([&line] { line.inspect = true; });
+  auto* clip = app.add_subcommand(
+      "clip", "try a clip over the neck of a built case, and tell as JSON what it leaves; the case stays as it is");
+  clip->add_option("folder", line.folder, "of the case")->required();
+  clip->add_option("--out", line.out, "file that gets what was found, in place of the print");
+  scene_options(clip, o);
+  clip->callback([&line] { line.clip = true; });
+  auto* pose = app.add_subcommand(
+      "pose",
+      "read poses of a built case's vessel, \"X Y Z mm RX RY RZ deg\" a line, and tell as JSON what the vessel "
+      "overlaps there and how its neck is seen; after the word part, with the lobes parted; the case stays as it is");
+  pose->add_option("folder", line.folder, "of the case")->required();
+  pose->add_option("--out", line.out, "folder that gets the surfaces, for a picture")->required();
+  pose->callback([&line] { line.pose = true; });
+}
+
 /// 0: parsed; else the exit status, help or complaint already said.
 int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std::FILE* out, std::FILE* err) {
   CLI::App app{"Makes training cases from patients' vessels. For training only, never for the care of patients.",
@@ -254,18 +297,7 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
   fresh->add_option("--out", line.out, "folder that gets the case's folder (default: scenes/cases of the project)");
   intake_options(fresh, o), wall_options(fresh, o), brain_options(fresh, o), place_options(fresh, o),
       scene_options(fresh, o);
-  auto* look = app.add_subcommand(
-      "inspect", "tell what a file holds and where the neck may be, as JSON, before a case is made of it");
-  look->add_option("input", line.input, "file, or folder of a DICOM series")->required();
-  look->add_option("--out", line.out, "folder that gets what was found, in place of the print");
-  intake_options(look, o);
-  look->callback([&line] { line.inspect = true; });
-  auto* clip = app.add_subcommand(
-      "clip", "try a clip over the neck of a built case, and tell as JSON what it leaves; the case stays as it is");
-  clip->add_option("folder", line.folder, "of the case")->required();
-  clip->add_option("--out", line.out, "file that gets what was found, in place of the print");
-  scene_options(clip, o);
-  clip->callback([&line] { line.clip = true; });
+  look_commands(app, line, o);
   for (const char* stage : stages) {
     auto* again = app.add_subcommand(
         stage, std::string("do the stage ") + stage + " of a case again, from what the one before wrote");
@@ -324,6 +356,13 @@ int tell_clip(const Line& line, const std::vector<std::string>& arguments, std::
   return 0;
 }
 
+int tell_poses(const Line& line, std::FILE* out) {
+  CaseFolder folder{line.folder, {}};
+  const Options o = read_options(folder);
+  answer_poses(PoseView(folder, find_project(folder.path), o), line.out, std::cin, out);
+  return 0;
+}
+
 }  // namespace
 
 int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::FILE* err) {
@@ -337,6 +376,7 @@ int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::
       return 0;
     }
     if (line.clip) return tell_clip(line, arguments, out, err, progress);
+    if (line.pose) return tell_poses(line, out);
     CaseFolder folder;
     if (line.stage.empty()) {
       if (!is_case_name(line.name))

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/input_error.h"
 #include "core/mechanics/instrument.h"
 #include "core/mechanics/soft_body.h"
@@ -56,6 +58,9 @@ Fissure read_fissure(const std::filesystem::path& project, const std::filesystem
   out.approach = approach;
   for (Surface* s : loaded.simulation->surfaces()) {
     if (s->body().id == approach.floor) out.floor = in_mm(s->rest());
+    const auto& rigid = approach.obstacles;
+    if (std::find(rigid.begin(), rigid.end(), s->body().id) != rigid.end())
+      out.obstacles.push_back({s->body().id, in_mm(s->rest())});
     const auto* soft = dynamic_cast<const SoftBody*>(&s->body());
     if (!soft) continue;
     Lobe lobe;

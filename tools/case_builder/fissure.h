@@ -31,6 +31,11 @@ struct Fissure {
   std::vector<Lobe> lobes;
   TriMesh floor;       ///< rigid
   TriMesh retractors;  ///< as they stand at home
+  struct Rigid {
+    std::string name;  ///< of Approach::obstacles
+    TriMesh mesh;
+  };
+  std::vector<Rigid> obstacles;  ///< bone, falx
 };
 
 /// `lobes`: a folder with NAME.msh and NAME_surface.ply of the approach's lobes, and its floor's surface, in the frame

@@ -30,6 +30,8 @@ Options as_read(Options o) {
   for (Plane& cut : o.cuts) both(cut);
   for (Stroke& stroke : o.paint)
     for (Point& p : stroke.points) flip(p[0]);
+  for (WallPatch& patch : o.wall_patches)
+    for (Point& p : patch.points) flip(p[0]);
   if (o.neck) both(*o.neck);
   if (o.neck_points) both(*o.neck_points);
   return o;

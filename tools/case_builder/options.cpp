@@ -25,6 +25,25 @@ Json strokes_json(const std::vector<Stroke>& strokes) {
   return out;
 }
 
+Json wall_patches_json(const std::vector<WallPatch>& patches) {
+  Json out = Json::array();
+  for (const WallPatch& p : patches) {
+    Json one = {{"points", p.points}, {"radius_mm", p.radius_mm}};
+    if (!p.thickness.empty()) one["thickness"] = p.thickness;
+    if (!p.young.empty()) one["young"] = p.young;
+    out.push_back(one);
+  }
+  return out;
+}
+
+std::vector<WallPatch> wall_patches_from_json(const Json& json) {
+  std::vector<WallPatch> out;
+  for (const Json& p : json)
+    out.push_back({p.at("points").get<std::vector<Point>>(), p.at("radius_mm"), p.value("thickness", std::string()),
+                   p.value("young", std::string())});
+  return out;
+}
+
 }  // namespace
 
 std::vector<Stroke> strokes_from_json(const Json& json) {
@@ -55,6 +74,7 @@ Json to_json(const Options& o) {
   j["vertices"] = o.vertices;
   j["bleb"] = o.bleb;
   if (!o.walls.empty()) j["walls"] = o.walls;
+  if (!o.wall_patches.empty()) j["wall_patches"] = wall_patches_json(o.wall_patches);
   if (!o.brain.empty()) {
     j["brain"] = o.brain;
     j["lobe_labels"] = o.lobe_labels;
@@ -67,6 +87,7 @@ Json to_json(const Options& o) {
   j["gap"] = o.gap;
   j["spin"] = o.spin;
   j["keep_spin"] = o.keep_spin;
+  put(j, "pose", o.pose);
   j["lobes"] = o.lobes;
   if (!o.site.empty()) j["site"] = o.site;
   if (o.difficulty > 0) j["difficulty"] = o.difficulty;
@@ -102,6 +123,7 @@ Options options_from_json(const Json& j) {
     take(j, "vertices", o.vertices);
     take(j, "bleb", o.bleb);
     take(j, "walls", o.walls);
+    if (j.contains("wall_patches")) o.wall_patches = wall_patches_from_json(j["wall_patches"]);
     take(j, "brain", o.brain);
     take(j, "lobe_labels", o.lobe_labels);
     take(j, "brain_unit_mm", o.brain_unit_mm);
@@ -112,6 +134,7 @@ Options options_from_json(const Json& j) {
     take(j, "gap", o.gap);
     take(j, "spin", o.spin);
     take(j, "keep_spin", o.keep_spin);
+    take(j, "pose", o.pose);
     take(j, "lobes", o.lobes);
     take(j, "site", o.site);
     take(j, "difficulty", o.difficulty);

@@ -13,6 +13,8 @@ namespace insula::case_builder {
 
 using Point = std::array<double, 3>;
 using Plane = std::array<double, 6>;  ///< a point and a normal
+/// A motion x' = R x + shift: the shift in mm, and R as an axis times its angle in degrees.
+using RigidMotion = std::array<double, 6>;
 using Json = nlohmann::ordered_json;
 
 /// A line along which something was painted or erased, with a ball for a brush; mm.
@@ -20,6 +22,14 @@ struct Stroke {
   bool erase = false;
   double radius_mm = 1;
   std::vector<Point> points;
+};
+
+/// A part of the wall about points of it, with a thickness and a modulus of its own. Texts have their unit; empty: those
+/// of the region in which the first point lies.
+struct WallPatch {
+  std::vector<Point> points;
+  double radius_mm = 1;
+  std::string thickness, young;
 };
 
 /// Lengths in millimetres, positions in the frame of the input after its unit has been applied, before it is mirrored.
@@ -45,6 +55,7 @@ struct Options {
   int vertices = 1650;             ///< of the wall, about
   double bleb = 1;                 ///< radius of the weak spot at the dome; 0: none
   std::vector<std::string> walls;  ///< changes of a region's thickness and modulus (region_walls.h)
+  std::vector<WallPatch> wall_patches;  ///< parts of the wall, the later ones over the earlier (wall_patches.h)
   // brain
   std::vector<std::string>
       brain;  ///< a volume of labels; NAME=FILE for each lobe; or one closed surface. Empty: the shipped lobes
@@ -57,6 +68,7 @@ struct Options {
   bool in_place = false;             ///< the input lies in the frame of the lobes already
   double gap = 0.4;                  ///< between the wall and the lobes
   double spin = 0;  ///< turns the vessel about the sac's axis, degrees, after which the place is looked for nearby
+  std::optional<RigidMotion> pose;  ///< in place of the search: where the vessel is moved to
   bool keep_spin = false;  ///< no other spin is tried
   std::string lobes;       ///< folder with lobes as those of meshes/lobes; empty: those
   // scenes

@@ -163,15 +163,6 @@ class ElasticLobe {
   VecX u_;
 };
 
-/// Least distance between two surfaces, vertices of either against the other; negative when one is inside of the other.
-double room(const Solid& a, const Solid& b) {
-  double least = 10;
-  for (const auto& [from, to] : {std::pair(&a, &b), std::pair(&b, &a)})
-    for (const Vec3& p : from->mesh().vertices)
-      if (const Nearest n = to->nearest(p, std::max(least, deepest)); n.found) least = std::min(least, n.distance);
-  return least;
-}
-
 /// Conditions that keep the lobe's vertices from a solid; each no nearer than `gap`, or than it was at the start.
 void keep_from(const ElasticLobe& lobe, const Solid& own, const Solid& other, double gap,
                const std::vector<double>* at_start, std::vector<Condition>& out) {
@@ -231,12 +222,12 @@ double lower_floor(Solid& floor, const Solid& wall, double gap) {
 
 /// Lowers the floor where the wall needs clearance.
 Room clear_floor(Solid& floor, Fissure& fissure, const Solid& wall, double gap) {
-  Room out{fissure.approach.floor, room(floor, wall) - wall_half, 0, 0};
+  Room out{fissure.approach.floor, room_beside(floor, wall), 0, 0};
   if (out.before < gap) {
     out.moved = lower_floor(floor, wall, gap + wall_half);
     fissure.floor = floor.mesh();
   }
-  out.after = room(floor, wall) - wall_half;
+  out.after = room_beside(floor, wall);
   return out;
 }
 
@@ -247,7 +238,7 @@ class PartedLobes {
       : fissure_(fissure), wall_(wall), floor_(floor), wanted_(wanted + 0.05) {
     for (Lobe& l : fissure.lobes) {
       solid_.emplace_back(l.surface), lobe_.emplace_back(l);
-      rooms.push_back({l.name, room(solid_.back(), wall) - wall_half, 0, 0});
+      rooms.push_back({l.name, room_beside(solid_.back(), wall), 0, 0});
     }
     for (std::size_t i = 0; i < 2; ++i)
       to_floor_.push_back(distances(solid_[i], floor)), to_other_.push_back(distances(solid_[i], solid_[1 - i]));
@@ -267,7 +258,7 @@ class PartedLobes {
   }
   void judge(std::vector<Note>& notes) {
     for (std::size_t i = 0; i < 2; ++i) {
-      rooms[i].after = room(solid_[i], wall_) - wall_half;
+      rooms[i].after = room_beside(solid_[i], wall_);
       const double least = rooms[i].least_volume = lobe_[i].min_volume();
       if (least < 0.15)
         notes.push_back(
@@ -321,6 +312,15 @@ void tell_room(const Room& r, std::vector<Note>& notes) {
 }
 
 }  // namespace
+
+/// Vertices of either against the other; negative when one is inside of the other.
+double room_beside(const Solid& surface, const Solid& wall) {
+  double least = 10;
+  for (const auto& [from, to] : {std::pair(&surface, &wall), std::pair(&wall, &surface)})
+    for (const Vec3& p : from->mesh().vertices)
+      if (const Nearest n = to->nearest(p, std::max(least, deepest)); n.found) least = std::min(least, n.distance);
+  return least - wall_half;
+}
 
 bool is_sound(const std::vector<Room>& rooms) {
   return std::all_of(rooms.begin(), rooms.end(),

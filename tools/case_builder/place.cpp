@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "core/base/input_error.h"
 #include "tools/case_builder/approach.h"
@@ -24,6 +25,7 @@ void write_lobe(const fs::path& folder, const Lobe& lobe) {
   write_ply(folder / (lobe.name + "_surface.ply"), lobe.surface, "unit mm; a lobe parted for a vessel");
 }
 
+constexpr double per_degree = std::numbers::pi / 180;
 constexpr double easy = 2.5;  // of a plan's cost, below which a place is taken as the search ranks it
 
 /// A placement, and the clip that seems to fit best there. Parting the lobes is the long work, so it comes later.
@@ -78,6 +80,18 @@ Fitted fitted(const Candidate& c, const Fissure& fissure, const Options& o, Prog
 
 }  // namespace
 
+Placement placement_of(const RigidMotion& m) {
+  Placement p;
+  p.rotation = from_rotation_vector(per_degree * Vec3(m[3], m[4], m[5])).toRotationMatrix();
+  p.shift = {m[0], m[1], m[2]};
+  return p;
+}
+
+RigidMotion motion_of(const Placement& p) {
+  const Vec3 turn = rotation_vector(Quat(p.rotation)) / per_degree;
+  return {p.shift.x(), p.shift.y(), p.shift.z(), turn.x(), turn.y(), turn.z()};
+}
+
 void write_placement(const Placement& p, Json& json) {
   json["rotation"] = Json::array();
   for (int k = 0; k < 9; ++k) json["rotation"].push_back(rounded(p.rotation(k / 3, k % 3)));
@@ -98,13 +112,17 @@ void run_place(const CaseFolder& folder, const fs::path& project, const Options&
   const Approach approach = read_approach(project, o.approach);
   const Fissure fissure = read_fissure(project, o.brain.empty() ? fs::path(o.lobes) : folder.brain(), approach);
   // A vessel that lies in the frame of the author's own brain goes where that went.
-  const std::vector<Placement> all = o.in_place && !o.brain.empty() ? std::vector<Placement>{brain_motion(folder)}
+  const std::vector<Placement> all = o.in_place && !o.pose && !o.brain.empty() ? std::vector<Placement>{brain_motion(folder)}
                                                                     : find_placements(v, fissure, o, progress);
   progress.step("parting the lobes");
   const std::vector<Candidate> ranked = candidates(v, all, fissure, read_clips(project), o);
   Fitted best = fitted(ranked.front(), fissure, o, progress);
   for (std::size_t k = 1; k < ranked.size() && !best.settles(); ++k)
     if (Fitted next = fitted(ranked[k], fissure, o, progress); next.better_than(best)) best = std::move(next);
+  if (!is_sound(best.rooms) && o.pose)
+    throw InputError(
+        "the vessel cannot lie where --pose moves it: the lobes would have to be crushed. Move it to where it overlaps "
+        "them less");
   if (!is_sound(best.rooms))
     throw InputError(fmt::format(
         "the vessel has no place in this fissure: its dome is {:.1f} mm high, and the lobes would have to be "

@@ -6,6 +6,7 @@
 #include "tools/case_builder/case_folder.h"
 #include "tools/case_builder/fissure.h"
 #include "tools/case_builder/progress.h"
+#include "tools/case_builder/solid.h"
 
 namespace insula::case_builder {
 
@@ -17,6 +18,9 @@ struct Placement {
   Vec3 shift = Vec3::Zero();
   Vec3 apply(const Vec3& p) const { return rotation * p + shift; }
 };
+/// From an option and back, its rotation by half a turn at most.
+Placement placement_of(const RigidMotion& motion);
+RigidMotion motion_of(const Placement& placement);
 /// As "rotation" (by rows) and "shift_mm".
 void write_placement(const Placement& placement, Json& json);
 Placement placement_from(const Json& json);
@@ -36,6 +40,9 @@ struct Room {
   double moved = 0;              ///< farthest that a node was moved, mm
   double least_volume = 1;       ///< of a tetrahedron over what it was; the floor has none
 };
+
+/// How far a wall is from a surface of the fissure, as Room has it, mm.
+double room_beside(const Solid& surface, const Solid& wall);
 
 /// Whether nothing touches the wall.
 bool is_clear(const std::vector<Room>& rooms);

@@ -183,6 +183,7 @@ void refine(const PlacementCost& cost, BestTurn& best) {
 
 std::vector<Placement> find_placements(const artery::Vessel& v, const Fissure& fissure, const Options& o,
                                        Progress& progress) {
+  if (o.pose) return {placement_of(*o.pose)};
   if (o.in_place) return {Placement()};
   if (!v.neck) throw InputError("a vessel without a neck has no place");
   progress.step("distances in the fissure");

@@ -39,18 +39,9 @@ std::vector<WallOf> proposed(const artery::Vessel& v) {
   throw InputError("--wall " + text + ": " + why);
 }
 
-/// In SI units. Throws InputError for a value that the membrane's declaration does not allow.
-double value_of(const WallChange& c, const std::string& text) {
-  const auto membrane = builtin_registry().find("membrane")->create();
-  auto* parameter = dynamic_cast<QuantityParam*>(membrane->find_param(c.parameter));
-  if (!parameter) throw std::logic_error("<membrane> declares no " + c.parameter);
-  if (const std::string why = parameter->assign(c.value, {}); !why.empty()) refuse(text, why);
-  return (*parameter)();
-}
-
 void apply(WallOf& wall, const WallChange& c, const std::string& text) {
-  if (c.parameter == "thickness") wall.thickness_mm = 1e3 * value_of(c, text);
-  else wall.young_mpa = 1e-6 * value_of(c, text);
+  if (c.parameter == "thickness") wall.thickness_mm = 1e3 * wall_value(c.parameter, c.value, "--wall " + text);
+  else wall.young_mpa = 1e-6 * wall_value(c.parameter, c.value, "--wall " + text);
 }
 
 /// The wall of one region alone, which leaves the others that it was declared with.
@@ -79,6 +70,14 @@ WallOf& wall_alone(std::vector<WallOf>& walls, const std::string& region, const 
 }
 
 }  // namespace
+
+double wall_value(const std::string& name, const std::string& value, const std::string& given) {
+  const auto membrane = builtin_registry().find("membrane")->create();
+  auto* parameter = dynamic_cast<QuantityParam*>(membrane->find_param(name));
+  if (!parameter) throw std::logic_error("<membrane> declares no " + name);
+  if (const std::string why = parameter->assign(value, {}); !why.empty()) throw InputError(given + ": " + why);
+  return (*parameter)();
+}
 
 WallChange read_wall_change(const std::string& text) {
   const std::size_t dot = text.find('.'), equals = text.find('=');

@@ -110,6 +110,23 @@ std::string judged(const SceneFacts& f, const char* hold) {
       f.branches, hold);
 }
 
+/// Painted parts of the wall.
+std::string painted_parts(const SceneFacts& f) {
+  std::string s;
+  for (std::size_t i = 0; i < f.patches.size(); ++i) {
+    const PatchOf& p = f.patches[i];
+    std::string spots;
+    for (const Vec3& x : p.spots)
+      spots += fmt::format("{}{:.2f} {:.2f} {:.2f} mm", spots.empty() ? "" : "; ", x.x() + 0.0, x.y() + 0.0,
+                           x.z() + 0.0);
+    s += fmt::format(
+        "    <membrane id=\"wall_patch_{}\" spots=\"{}\" spot_radius=\"{:g} mm\" thickness=\"{:g} mm\" "
+        "young=\"{:g} MPa\" added_mass=\"1 kg/m2\"/>\n",
+        i + 1, spots, p.radius_mm, p.thickness_mm, p.young_mpa);
+  }
+  return s;
+}
+
 }  // namespace
 
 std::string artery_part(const SceneFacts& f) {
@@ -124,6 +141,7 @@ std::string artery_part(const SceneFacts& f) {
         "    <membrane id=\"wall_{}\" regions=\"{}\" thickness=\"{:g} mm\" young=\"{:g} MPa\" added_mass=\"1 "
         "kg/m2\"/>\n",
         i + 1, f.walls[i].regions, f.walls[i].thickness_mm, f.walls[i].young_mpa);
+  s += painted_parts(f);
   s += fmt::format("    <anchor_springs id=\"tethers\" regions=\"{}\" stiffness=\"1 kPa/mm\"/>\n", f.tethered);
   s += "    <surface id=\"artery_wall\" material=\"vessel\" thickness=\"0.3 mm\"/>\n"
        "    <surface id=\"artery_picture\" mesh=\"artery/picture.ply\" mesh_unit=\"mm\" material=\"vessel\" "

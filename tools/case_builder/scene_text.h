@@ -5,6 +5,7 @@
 #include "tools/case_builder/region_walls.h"
 #include "tools/case_builder/rules.h"
 #include "tools/case_builder/scenes.h"
+#include "tools/case_builder/wall_patches.h"
 
 namespace insula::case_builder {
 
@@ -14,6 +15,7 @@ struct SceneFacts {
   Approach approach;
   Assets assets;
   std::vector<WallOf> walls;
+  std::vector<PatchOf> patches;    ///< where the vessel lies now
   std::string tethered;            ///< regions that the surroundings hold
   std::string branches;            ///< centrelines that lead to outlets: their flow is to stay
   Vec3 neck, dome;                 ///< mm

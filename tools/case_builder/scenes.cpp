@@ -10,6 +10,7 @@
 #include "tools/case_builder/clipping_rehearsal.h"
 #include "tools/case_builder/dissection_script.h"
 #include "tools/case_builder/opening_play.h"
+#include "tools/case_builder/place.h"
 #include "tools/case_builder/rupture_script.h"
 #include "tools/case_builder/scene_text.h"
 #include "tools/case_builder/wall.h"
@@ -36,7 +37,12 @@ SceneFacts facts_of(const CaseFolder& folder, const artery::Vessel& v, const Opt
   f.site = o.site, f.difficulty = o.difficulty;
   f.rules = rule_changes(o), f.folder = folder.path;
   f.temporary = temporary_clip;
-  f.walls = walls_from(read_json(folder.wall() / "notes.json").at("walls"));
+  const Json wall = read_json(folder.wall() / "notes.json");
+  f.walls = walls_from(wall.at("walls"));
+  f.patches = patches_from(wall.value("patches", Json::array()));
+  const Placement to = placement_from(read_json(folder.path / "place.json"));
+  for (PatchOf& patch : f.patches)
+    for (Vec3& spot : patch.spots) spot = to.apply(spot);
   for (const artery::NamedCurve& c : v.centrelines) {
     if (c.name == "sac") continue;
     f.tethered += (f.tethered.empty() ? "" : " ") + c.region;

@@ -28,14 +28,31 @@ std::vector<std::string> parts_of(std::string_view text) {
   return out;
 }
 
-const Unit* length_unit(std::string_view symbol) {
-  for (const Unit& unit : Length::units())
+const Unit* unit_of(std::span<const Unit> units, std::string_view symbol) {
+  for (const Unit& unit : units)
     if (unit.symbol == symbol) return &unit;
   return nullptr;
 }
 
-/// Removes three numbers from the front of the parts, and a unit if they are a position. False if they are missing.
-bool take_vector(std::span<const std::string>& parts, bool position, std::vector<double>& out) {
+const Unit* length_unit(std::string_view symbol) { return unit_of(Length::units(), symbol); }
+
+/// What three numbers are, and thereby their unit.
+enum class Three { position, direction, rotation };
+
+/// How many of the numbers' own unit, mm or degrees, the unit at the front is; the unit is removed. 0: there is none.
+double take_unit(std::span<const std::string>& parts, Three what) {
+  const bool turned = what == Three::rotation;
+  const auto units = turned ? Angle::units() : Length::units();
+  const Unit* unit = parts.empty() ? nullptr : unit_of(units, parts[0]);
+  if (!unit) return 0;
+  parts = parts.subspan(1);
+  const Unit* own = unit_of(units, turned ? "deg" : "mm");
+  return unit == own ? 1 : unit->to_si / own->to_si;
+}
+
+/// Removes three numbers from the front of the parts, and their unit unless they are a direction. False if they are
+/// missing.
+bool take_vector(std::span<const std::string>& parts, Three what, std::vector<double>& out) {
   if (parts.size() < 3) return false;
   std::array<double, 3> v{};
   std::string ignored;
@@ -45,14 +62,9 @@ bool take_vector(std::span<const std::string>& parts, bool position, std::vector
     v[k] = *value;
   }
   parts = parts.subspan(3);
-  double mm = 1;
-  if (position) {
-    const Unit* unit = parts.empty() ? nullptr : length_unit(parts[0]);
-    if (!unit) return false;
-    mm = unit->symbol == "mm" ? 1 : unit->to_si / 1e-3;
-    parts = parts.subspan(1);
-  }
-  for (const double x : v) out.push_back(mm * x);
+  const double factor = what == Three::direction ? 1 : take_unit(parts, what);
+  if (factor == 0) return false;
+  for (const double x : v) out.push_back(factor * x);
   return true;
 }
 
@@ -63,6 +75,7 @@ std::string with_units(std::span<const std::string> parts, Shape shape) {
   for (std::size_t k = 0; k < parts.size(); ++k) {
     out += (k ? " " : "") + parts[k];
     if (k == 2 || (k == 5 && shape == Shape::two_points)) out += " mm";
+    if (k == 5 && shape == Shape::motion) out += " deg";
   }
   return out;
 }
@@ -84,6 +97,7 @@ std::string_view pattern(Shape shape) {
     case Shape::point: return "X Y Z mm";
     case Shape::plane: return "X Y Z mm NX NY NZ";
     case Shape::two_points: return "X Y Z mm X Y Z mm";
+    case Shape::motion: return "X Y Z mm RX RY RZ deg";
   }
   return "";
 }
@@ -92,8 +106,11 @@ std::optional<std::vector<double>> read_shape(std::string_view text, Shape shape
   const std::vector<std::string> all = parts_of(text);
   std::span<const std::string> parts(all);
   std::vector<double> out;
-  const bool read = take_vector(parts, true, out) &&
-                    (shape == Shape::point || take_vector(parts, shape == Shape::two_points, out)) && parts.empty();
+  const Three second = shape == Shape::two_points ? Three::position
+                       : shape == Shape::motion   ? Three::rotation
+                                                  : Three::direction;
+  const bool read = take_vector(parts, Three::position, out) &&
+                    (shape == Shape::point || take_vector(parts, second, out)) && parts.empty();
   if (read) return out;
   const std::string meant = with_units(all, shape);
   error = meant.empty() ? in_quotes(text) + " is not of the form " + in_quotes(pattern(shape))

@@ -19,13 +19,15 @@ std::optional<double> read_with_unit(std::string_view text, std::span<const Unit
                                      const QuantityOption& option, std::string& error);
 
 /// Contents of a text with positions and directions, in this order.
-enum class Shape { point, plane, two_points };
+enum class Shape { point, plane, two_points, motion };
 /// The number of numbers in a shape.
 constexpr std::size_t number_count(Shape shape) { return shape == Shape::point ? 3 : 6; }
-/// The pattern for the user: "X Y Z mm" for a position and NX NY NZ for a direction.
+/// The pattern for the user: "X Y Z mm" for a position, NX NY NZ for a direction, RX RY RZ deg for a rotation (its axis
+/// times its angle).
 std::string_view pattern(Shape shape);
 
-/// Reads the numbers of a point, a plane (a point and a direction) or two points, lengths in mm. Empty, with the reason
+/// Reads the numbers of a point, a plane (a point and a direction), two points or a motion (a shift and a rotation),
+/// lengths in mm and angles in degrees. Empty, with the reason
 /// in `error`, if the text does not follow the pattern.
 std::optional<std::vector<double>> read_shape(std::string_view text, Shape shape, std::string& error);
 

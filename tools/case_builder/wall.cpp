@@ -14,6 +14,7 @@
 #include "tools/case_builder/region_walls.h"
 #include "tools/case_builder/tidy.h"
 #include "tools/case_builder/trim.h"
+#include "tools/case_builder/wall_patches.h"
 
 namespace insula::case_builder {
 namespace {
@@ -183,7 +184,8 @@ void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
   progress.stage("wall", 5);
   const Intake in = read_intake(folder);
   std::vector<Note> notes;
-  const Vessel v = make_wall(in.surface, as_read(o), notes, progress);
+  const Options read = as_read(o);
+  const Vessel v = make_wall(in.surface, read, notes, progress);
   progress.step("writing");
   artery::write_vessel(v, folder.wall());
   Json json;
@@ -191,6 +193,7 @@ void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
   for (const auto& cap : v.wall.caps) openings.push_back({{"name", cap.name}, {"calibre_mm", rounded(2 * cap.radius)}});
   json["openings"] = openings;
   json["walls"] = to_json(walls_of(v, o));
+  json["patches"] = to_json(patches_of(v, read, notes));
   json["proposed_walls"] = to_json(walls_of(v, {}));
   json["neck"] = neck_json(v, o.mirror);
   json["notes"] = to_json(notes);

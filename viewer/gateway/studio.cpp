@@ -19,6 +19,7 @@ using Kind = StudioJob::Kind;
 constexpr auto inspect_limit = std::chrono::minutes(5);
 constexpr auto build_limit = std::chrono::hours(2);
 constexpr const char* found_in = "inspect";
+constexpr const char* pose_folder = "pose";
 constexpr const char* damaged = "the project's description is damaged";
 
 std::string state_of(const StudioProject& p, const char* what) {
@@ -52,6 +53,7 @@ Studio::Studio(const StudioPlaces& places)
     : places_(places),
       projects_(places.data / "studio"),
       player_(places.programs / "insula", places.data),
+      poses_(places.programs / "insula_case"),
       scenes_(places.data, places.programs / "insula", player_) {
   std::error_code ignored;
   if (offered()) fs::remove_all(projects_.incoming_folder(), ignored);  // what an earlier run left
@@ -235,6 +237,7 @@ void Studio::ended(const std::string& name, const StudioJob& job) {
 
 void Studio::look() {
   player_.look();
+  poses_.look();
   scenes_.look();
   for (auto it = jobs_.begin(); it != jobs_.end();) {
     if (!it->second->look()) {
@@ -292,6 +295,19 @@ ApiAnswer Studio::act(std::string_view path, StudioProject& p, const Json& body)
   return refusal(404, "not found");
 }
 
+ApiAnswer Studio::pose(const StudioProject& p, std::string_view query) {
+  const fs::path built = case_folder(p);
+  if (built.empty()) return refusal(409, "the case must be built first");
+  const std::string wanted = query_value(query, "pose");
+  std::optional<StudioPoses::Question> question;
+  if (!wanted.empty()) {
+    const auto pose = pose_of(wanted);
+    if (!pose) return refusal(400, "a place has six numbers");
+    question = {*pose, query_value(query, "parted") == "1"};
+  }
+  return answer_with(poses_.ask(built, projects_.folder(p.name) / pose_folder, question));
+}
+
 ApiAnswer Studio::get(std::string_view path, std::string_view query) {
   if (StudioScenes::answers(path)) return scenes_.get(path, query);
   if (path == "projects") {
@@ -301,10 +317,11 @@ ApiAnswer Studio::get(std::string_view path, std::string_view query) {
         list.push_back({{"name", name}, {"file", p->file}, {"built", !case_folder(*p).empty()}});
     return answer_with(Json{{"projects", list}, {"building", building()}, {"most_bytes", most_scan_bytes}});
   }
-  if (path != "project") return refusal(404, "not found");
+  if (path != "project" && path != "pose") return refusal(404, "not found");
   std::optional<StudioProject> p = projects_.read(query_value(query, "name"));
   if (!p) return refusal(404, "there is no such project");
   try {
+    if (path == "pose") return pose(*p, query);
     const std::string state = state_of(*p, is_scan(*p) && !scan_is_read(*p) ? "scan" : "inspect");
     if (!jobs_.count(p->name) && (state.empty() || state == "running")) inspect(*p);
     return shown(*p);
@@ -347,7 +364,11 @@ std::optional<fs::path> Studio::file(std::string_view path, std::string_view que
   const auto p = projects_.read(query_value(query, "name"));
   if (!p) return std::nullopt;
   fs::path out;
-  if (path == "surface") out = projects_.folder(p->name) / found_in / "surface.ply";
+  if (path == "pose_surface") {
+    const std::string part = query_value(query, "part");
+    if (part.empty() || part.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") != std::string::npos) return std::nullopt;
+    out = projects_.folder(p->name) / pose_folder / (part + ".ply");
+  } else if (path == "surface") out = projects_.folder(p->name) / found_in / "surface.ply";
   else if (path == "scan") out = scan_file(projects_.folder(p->name), ".raw");
   else if (const fs::path folder = case_folder(*p); folder.empty()) return std::nullopt;
   else if (path == "report") out = folder / "report.html";

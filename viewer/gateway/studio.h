@@ -13,6 +13,7 @@
 #include "viewer/gateway/api_answer.h"
 #include "viewer/gateway/studio_job.h"
 #include "viewer/gateway/studio_player.h"
+#include "viewer/gateway/studio_poses.h"
 #include "viewer/gateway/studio_projects.h"
 #include "viewer/gateway/studio_scenes.h"
 
@@ -39,6 +40,7 @@ class Studio {
   ///                    inspect: {state, error, number, facts},
   ///                    build: {state, error, seconds, stage, percent, step}, built: {current, report, exercises},
   ///                    trial: {state, error, found, current}, play: {state, url, error}}
+  ///   pose?name=&pose=&parted=   StudioPoses::ask() of the built case; pose: six numbers, parted: 1 with the lobes parted
   ApiAnswer get(std::string_view path, std::string_view query);
   ///   choose {name, choices}; undo, redo, build, try, cancel, remove, again {name}; play {name, exercise}: the
   ///   project, as above. again: the file is read once more. edit {name}: a copy of the built scenes. What begins with
@@ -46,7 +48,7 @@ class Studio {
   ApiAnswer post(std::string_view path, const std::string& body);
   /// file=: name of the author's file. The new project. The content is moved to it.
   ApiAnswer upload(std::string_view query, const std::filesystem::path& content);
-  /// surface, scan, side, front, fissure and report of the project name=.
+  /// surface, scan, side, front, fissure and report of the project name=; pose_surface of it with part=.
   std::optional<std::filesystem::path> file(std::string_view path, std::string_view query) const;
   /// Looks after the programs at work; about ten times a second.
   void look();
@@ -66,6 +68,7 @@ class Studio {
   void scan_ended(StudioProject& project, const StudioJob& job);
   void ended(const std::string& name, const StudioJob& job);
   void added(const std::string& name, const StudioJob& job);
+  ApiAnswer pose(const StudioProject& project, std::string_view query);
   ApiAnswer try_clip(StudioProject& project);
   void trial_ended(StudioProject& project, const StudioJob& job);
   /// What was found, and whether it is that of the present choices.
@@ -79,6 +82,7 @@ class Studio {
   std::map<std::string, std::unique_ptr<StudioJob>> jobs_;          ///< by project: one each
   std::map<std::string, std::string> wanted_exercise_, add_error_;  ///< by project
   StudioPlayer player_;
+  StudioPoses poses_;
   StudioScenes scenes_;
   std::uint64_t came_ = 0;  ///< files so far
 };

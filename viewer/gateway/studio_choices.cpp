@@ -19,6 +19,7 @@ constexpr double far_away = 1e6;  // mm
 constexpr std::size_t most_cuts = 12;
 constexpr std::size_t most_strokes = 100, most_points = 200;
 constexpr std::size_t most_changes = 200;
+constexpr std::size_t most_patches = 20;
 
 bool is_number(const Json& v, double least, double most) {
   return v.is_number() && std::isfinite(v.get<double>()) && v.get<double>() >= least && v.get<double>() <= most;
@@ -79,6 +80,24 @@ bool are_rule_changes(const Json& v) {
          });
 }
 
+/// A value with its unit; empty: none. What separates the parts of a patch may not stand in it.
+bool is_value(const Json& v) {
+  return v.is_string() && v.get_ref<const std::string&>().size() < 40 &&
+         v.get_ref<const std::string&>().find_first_of(",;=\n\r") == std::string::npos;
+}
+
+bool is_patch(const Json& v) {
+  return v.is_object() && v.size() == 4 && v.contains("points") && v["points"].is_array() && !v["points"].empty() &&
+         v["points"].size() <= most_points &&
+         std::all_of(v["points"].begin(), v["points"].end(), [](const Json& p) { return are_numbers(p, 3); }) &&
+         v.contains("radius_mm") && is_number(v["radius_mm"], 0.1, 20) && v.contains("thickness") &&
+         is_value(v["thickness"]) && v.contains("young") && is_value(v["young"]);
+}
+
+bool are_patches(const Json& v) {
+  return v.is_array() && v.size() <= most_patches && std::all_of(v.begin(), v.end(), is_patch);
+}
+
 bool is_clip(const Json& v) {
   return v.is_string() && v.get_ref<const std::string&>().size() <= 64 &&
          std::all_of(v.get_ref<const std::string&>().begin(), v.get_ref<const std::string&>().end(),
@@ -123,6 +142,10 @@ const std::map<std::string, Rule>& rules() {
       {"spin_deg",
        {[](const Json& v) { return v.is_null() || is_number(v, -360, 360); }, "a turn is from -360 to 360 degrees"}},
       {"walls", {are_changes, "a wall is changed by its region, thickness or young, and a value"}},
+      {"wall_patches",
+       {are_patches, "there are 20 painted parts of the wall at most, each with 1 to 200 points, a radius, a thickness "
+                     "and a stiffness"}},
+      {"pose", {[](const Json& v) { return v.is_null() || are_numbers(v, 6); }, "a place has six numbers"}},
       {"rehearse", {is_switch, "the exercises are played, or not"}},
       {"rules", {are_rule_changes, "a goal is changed by its exercise, its name and a value"}},
       {"clip", {is_clip, "this is no clip"}},
@@ -150,6 +173,16 @@ std::string plane(const Json& v) {
   return fmt::format("{} {:.4f} {:.4f} {:.4f}", place(v), v[3].get<double>(), v[4].get<double>(), v[5].get<double>());
 }
 
+/// As tools/case_builder/wall_patches.h reads it.
+std::string patch(const Json& v) {
+  std::string out;
+  for (const Json& point : v["points"]) out += place(point) + ", ";
+  out += fmt::format("radius={:g} mm", v["radius_mm"].get<double>());
+  for (const char* name : {"thickness", "young"})
+    if (v[name] != "") out += fmt::format(", {}={}", name, v[name].get<std::string>());
+  return out;
+}
+
 }  // namespace
 
 Json first_choices() {
@@ -168,7 +201,9 @@ Json first_choices() {
           {"keep_mm", 13},
           {"vertices", 1650},
           {"walls", Json::array()},
+          {"wall_patches", Json::array()},
           {"spin_deg", nullptr},
+          {"pose", nullptr},
           {"rehearse", true},
           {"plays", 16},
           {"site", ""},
@@ -211,6 +246,11 @@ std::vector<std::string> intake_words(const Json& c) {
   return out;
 }
 
+std::string pose_words(const Json& v) {
+  return fmt::format("{} {:.3f} {:.3f} {:.3f} deg", place(v), v[3].get<double>(), v[4].get<double>(),
+                     v[5].get<double>());
+}
+
 std::vector<std::string> clip_words(const Json& c) {
   std::vector<std::string> out;
   if (c["clip"] != "") out.insert(out.end(), {"--clip", c["clip"].get<std::string>()});
@@ -233,6 +273,9 @@ std::vector<std::string> case_words(const Json& c) {
   if (c["keep_mm"] != before["keep_mm"]) add("--keep", fmt::format("{:g} mm", c["keep_mm"].get<double>()));
   if (c["vertices"] != before["vertices"]) add("--vertices", std::to_string(c["vertices"].get<int>()));
   for (const Json& change : c["walls"]) add("--wall", change.get<std::string>());
+  for (const Json& painted : c["wall_patches"])
+    if (painted["thickness"] != "" || painted["young"] != "") add("--wall-patch", patch(painted));
+  if (!c["pose"].is_null()) add("--pose", pose_words(c["pose"]));
   if (!c["spin_deg"].is_null()) add("--spin", fmt::format("{:g} deg", c["spin_deg"].get<double>()));
   if (c["rehearse"] == false) out.emplace_back("--no-rehearse");
   if (c["plays"] != before["plays"]) add("--plays", std::to_string(c["plays"].get<int>()));

@@ -12,8 +12,9 @@ namespace insula::gateway {
 ///   paint: [{erase, radius_mm, points: [[3]]}].
 /// - of the surface: unit, mirror, any_size, cuts: [[6]], rebuild_mm: null | number.
 /// - of the vessel: neck: null | {plane: [6]} | {points: [6]}, inlet: null | [3], keep_mm, vertices,
-///   walls: ["neck.young=7 MPa"].
-/// - of the case: spin_deg: null | number, rehearse, plays, site, difficulty, rules: ["3.clip.max_grade=1"],
+///   walls: ["neck.young=7 MPa"], wall_patches: [{points: [[3]], radius_mm, thickness, young}], the last two texts with
+///   their unit, "" as the region's.
+/// - of the case: pose: null | [6] (a shift in mm, a rotation vector in degrees), spin_deg: null | number, rehearse, plays, site, difficulty, rules: ["3.clip.max_grade=1"],
 ///   clip: "" | name, lift_mm, slide_mm, turn_deg: null | number.
 nlohmann::json first_choices();
 
@@ -26,6 +27,8 @@ inline constexpr const char* paint_file = "paint.json";
 /// Options of `insula case` that say the same: those of its stage intake, and all.
 std::vector<std::string> intake_words(const nlohmann::json& choices);
 std::vector<std::string> case_words(const nlohmann::json& choices);
+/// A pose as the option --pose has it.
+std::string pose_words(const nlohmann::json& pose);
 /// Those of a clip that is tried over the neck.
 std::vector<std::string> clip_words(const nlohmann::json& choices);
 

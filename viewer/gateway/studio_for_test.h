@@ -33,6 +33,9 @@ echo "wall     40 %  checks"
 [ "$what$behaviour" = newrefuse ] && echo "error: no sac was found" && exit 2
 [ "$what$behaviour" = inspectcrash ] && kill -SEGV $$
 [ "$what$behaviour" = inspectrefuse ] && echo "error: holds 2 DICOM series" && exit 2
+[ "$what$behaviour" = poserefuse ] && echo "error: is no case" && exit 2
+[ "$what" = pose ] && echo '{"surfaces": ["vessel"]}' && mkdir -p "$2" && echo ply > "$2/vessel.ply" &&
+  while read -r line; do echo "{\"told\": \"$line\"}"; done && exit 0
 [ "$what" = clip ] && echo '{"grade": 1}' > "$2" && exit 0
 mkdir -p "$2"
 case "$all" in */upload/scan*)

@@ -91,18 +91,22 @@ bool StudioSceneFiles::has(const std::string& name) const {
   return is_case_name(name) && fs::is_regular_file(folder(name) / copy_manifest, error);
 }
 
-std::vector<std::string> StudioSceneFiles::files(const std::string& name) const {
+std::vector<std::string> StudioSceneFiles::listed(const std::string& name, bool xml) const {
   std::vector<std::string> out;
   if (!has(name)) return out;
   std::error_code error;
   for (fs::recursive_directory_iterator it(folder(name), error), end; !error && it != end; it.increment(error)) {
     if (it->path().filename() == kept_folder) it.disable_recursion_pending();
-    else if (it->path().extension() == ".xml" && !it->is_symlink(error) && it->is_regular_file(error))
+    else if ((it->path().extension() == ".xml") == xml && it->path().filename() != copy_manifest &&
+             !it->is_symlink(error) && it->is_regular_file(error))
       out.push_back(it->path().lexically_relative(folder(name)).generic_string());
   }
   std::sort(out.begin(), out.end());
   return out;
 }
+
+std::vector<std::string> StudioSceneFiles::files(const std::string& name) const { return listed(name, true); }
+std::vector<std::string> StudioSceneFiles::meshes(const std::string& name) const { return listed(name, false); }
 
 std::vector<std::string> StudioSceneFiles::scenes(const std::string& name) const {
   std::vector<std::string> out;

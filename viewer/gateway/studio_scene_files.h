@@ -21,6 +21,8 @@ class StudioSceneFiles {
   /// Its scenes, and all XML files: paths below its folder.
   std::vector<std::string> scenes(const std::string& name) const;
   std::vector<std::string> files(const std::string& name) const;
+  /// Its other files, which the scenes may name.
+  std::vector<std::string> meshes(const std::string& name) const;
 
   struct Text {
     std::string text;
@@ -42,6 +44,8 @@ class StudioSceneFiles {
   void remove(const std::string& name) const;
 
  private:
+  /// Paths below the folder, of XML files or of all others.
+  std::vector<std::string> listed(const std::string& name, bool xml) const;
   bool holds(const std::string& name, const std::string& file) const;
   std::filesystem::path kept(const std::string& name, const std::string& file) const;
 

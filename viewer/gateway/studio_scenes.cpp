@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/base/case_name.h"
 #include "core/base/input_error.h"
 #include "viewer/gateway/json_input.h"
 #include "viewer/gateway/studio_projects.h"
@@ -83,6 +84,7 @@ ApiAnswer StudioScenes::shown(const std::string& name) const {
                           {"error", ""},
                           {"scenes", files_.scenes(name)},
                           {"files", files_.files(name)},
+                          {"meshes", files_.meshes(name)},
                           {"look", look}});
 }
 
@@ -124,6 +126,16 @@ ApiAnswer StudioScenes::open(const fs::path& from, const std::string& file) {
   copies_[name] = std::make_unique<StudioQuestion>(
       std::vector<std::string>{program_.string(), "cases", "copy", from.string(), files_.folder(name).string()},
       long_question);
+  return shown(name);
+}
+
+ApiAnswer StudioScenes::begin(const std::string& name) {
+  if (!is_case_name(name)) return refusal(400, "a name has letters, digits, _ and - only, 64 at most");
+  std::error_code error;
+  if (copies_.count(name) || fs::exists(files_.folder(name), error))
+    return refusal(409, "there is a scene of this name already");
+  copies_[name] = std::make_unique<StudioQuestion>(
+      std::vector<std::string>{program_.string(), "cases", "new", files_.folder(name).string()}, short_question);
   return shown(name);
 }
 
@@ -196,6 +208,7 @@ ApiAnswer StudioScenes::post(std::string_view path, const Json& body) {
   const std::string name = text_of(body, "name");
   try {
     if (path == "scene_open") return open_source(text_of(body, "source"));
+    if (path == "scene_new") return begin(name);
     if (path == "scene_remove" && copies_.count(name) && copies_[name]->ended()) {
       copies_.erase(name);
       return {200, "{}\n"};

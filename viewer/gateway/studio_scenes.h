@@ -28,12 +28,12 @@ class StudioScenes {
 
   ///   scenes                        {scenes: [{name, state, error}], most_bytes}
   ///   scene_sources, scene_elements {state, error, sources | elements}; asks a program first, so ask again
-  ///   scene?name=                   {name, state: "copying" | "ready" | "failed", error, scenes, files, look}
+  ///   scene?name=                   {name, state: "copying" | "ready" | "failed", error, scenes, files, meshes, look}
   ///   scene_file?name=&file=        {text, draft, versions}
   ///   scene_version?name=&file=&number=   {text}
   ///   scene_checked?name=           {state: "" | "running" | "done" | "failed", number, error, ok, problems}
   ApiAnswer get(std::string_view path, std::string_view query);
-  ///   scene_open {source}; scene_check {name, scene, file, text} gives {number}; scene_write {name, file, text} gives
+  ///   scene_new {name}: a scene from nothing, by `insula cases new`. scene_open {source}; scene_check {name, scene, file, text} gives {number}; scene_write {name, file, text} gives
   ///   {versions}; scene_look {name, scene} and scene_leave {name}: the scene; scene_remove {name}
   ApiAnswer post(std::string_view path, const nlohmann::json& body);
   /// Copies a scene, or the scenes in the folder of a built case. file: what the copy is named after.
@@ -53,6 +53,7 @@ class StudioScenes {
   ApiAnswer list() const;
   ApiAnswer file(const std::string& name, std::string_view query) const;
   ApiAnswer checked(const std::string& name) const;
+  ApiAnswer begin(const std::string& name);
   ApiAnswer open_source(const std::string& source);
   ApiAnswer check(const std::string& name, const nlohmann::json& body);
   ApiAnswer write(const std::string& name, const nlohmann::json& body);

@@ -30,6 +30,9 @@ case "$1 $2" in
   [ -d "$3" ] && from="$3" || from=$(dirname "$3")
   mkdir -p "$4/scenes" && cp "$from"/*.xml "$4/scenes" && ln -s /etc/passwd "$4/scenes/link.xml"
   echo '{"scenes": ["scenes/first.xml"]}' > "$4/insula_case.json";;
+"cases new")
+  mkdir -p "$3/meshes" && echo mesh > "$3/meshes/block.msh" && echo '<scene/>' > "$3/$(basename "$3").xml"
+  echo "{\"scenes\": [\"$(basename "$3").xml\"]}" > "$3/insula_case.json";;
 "check --json")
   [ -e "$here/slow" ] && exec sleep 100
   file=$(grep -l wrong "$(dirname "$3")"/*.xml)
@@ -223,6 +226,18 @@ TEST_F(StudioScenesTest, ASavedSceneThatCannotBeShownIsTold) {
 TEST_F(StudioScenesTest, ElementsAreAskedOnce) {
   const json done = wait("scene_elements", "", [](const json& j) { return j["state"] == "done"; });
   EXPECT_EQ(done["elements"][0]["name"], "scene");
+}
+
+TEST_F(StudioScenesTest, ASceneIsBegunFromNothing) {
+  EXPECT_EQ(post("scene_new", {{"name", "../mine"}}).status, 400);
+  EXPECT_EQ(post("scene_new", {{"name", ""}}).status, 400);
+  EXPECT_EQ(post("scene_new", {{"name", "mine"}}).status, 200);
+  const json made = wait("scene", "name=mine", [](const json& j) { return j["state"] == "ready"; });
+  EXPECT_EQ(made["scenes"], json::array({"mine.xml"}));
+  EXPECT_EQ(made["files"], json::array({"mine.xml"}));
+  EXPECT_EQ(made["meshes"], json::array({"meshes/block.msh"}));
+  EXPECT_EQ(get("scene_file", "name=mine&file=mine.xml")["text"], "<scene/>\n");
+  EXPECT_EQ(post("scene_new", {{"name", "mine"}}).status, 409) << "it is there already";
 }
 
 }  // namespace

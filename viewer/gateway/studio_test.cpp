@@ -69,6 +69,76 @@ TEST(StudioChoices, ChangesOfWallsAndRulesBecomeOptions) {
     EXPECT_THROW(changed_choices(first_choices(), {{"walls", {wrong}}}), InputError) << wrong;
 }
 
+TEST(StudioChoices, PaintedPartsAndThePlaceBecomeOptions) {
+  const json part = {{"points", {{1, 2, 3}, {4, 5, 6}}}, {"radius_mm", 1.2}, {"thickness", ""}, {"young", "7 MPa"}};
+  json c = changed_choices(first_choices(), {{"wall_patches", {part}}, {"pose", {1, 2, 3, 0, 0, 90}}});
+  EXPECT_EQ(case_words(c), (std::vector<std::string>{
+                               "--wall-patch", "1.000 2.000 3.000 mm, 4.000 5.000 6.000 mm, radius=1.2 mm, young=7 MPa",
+                               "--pose", "1.000 2.000 3.000 mm 0.000 0.000 90.000 deg"}));
+  EXPECT_EQ(intake_words(c), std::vector<std::string>()) << "the file is not read again";
+  json wrong = part;
+  wrong["young"] = "7 MPa, radius=9 mm";
+  EXPECT_THROW(changed_choices(c, {{"wall_patches", {wrong}}}), InputError);
+  wrong = part, wrong["points"] = json::array();
+  EXPECT_THROW(changed_choices(c, {{"wall_patches", {wrong}}}), InputError);
+  wrong = part, wrong["radius_mm"] = 0;
+  EXPECT_THROW(changed_choices(c, {{"wall_patches", {wrong}}}), InputError);
+  EXPECT_THROW(changed_choices(c, {{"wall_patches", json::array_t(21, part)}}), InputError);
+  EXPECT_THROW(changed_choices(c, {{"pose", {1, 2, 3}}}), InputError);
+}
+
+TEST_F(StudioTest, APlaceOfABuiltCaseIsLookedAt) {
+  const std::string name = ready();
+  EXPECT_EQ(studio_->get("pose", "name=" + name).status, 409) << "it is not built";
+  ask("build", name);
+  wait(name, "build");
+  EXPECT_EQ(studio_->get("pose", "name=" + name + "&pose=1,2,3").status, 400);
+  EXPECT_EQ(studio_->get("pose", "name=" + name + "&pose=1,2,3,4,5,nan").status, 400);
+  const auto asked = [&](const std::string& query) {
+    return json::parse(studio_->get("pose", "name=" + name + query).json);
+  };
+  const auto told = [&] {
+    for (int k = 0; k < 500; ++k) {
+      studio_->look();
+      const json now = asked("");
+      if (now["state"] != "starting" && now["busy"] == false) return now;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return json();
+  };
+  json now = asked("&pose=1,2,3,0,0,90");
+  EXPECT_EQ(now["state"], "starting");
+  EXPECT_EQ(now["busy"], true);
+  now = told();
+  EXPECT_EQ(now["state"], "ready") << now;
+  EXPECT_EQ(now["facts"]["surfaces"], json::array({"vessel"}));
+  EXPECT_EQ(now["answer"]["told"], "1.000 2.000 3.000 mm 0.000 0.000 90.000 deg");
+  EXPECT_TRUE(studio_->file("pose_surface", "name=" + name + "&part=vessel"));
+  EXPECT_FALSE(studio_->file("pose_surface", "name=" + name + "&part=../vessel"));
+  asked("&pose=0,0,0,0,0,0&parted=1");
+  EXPECT_EQ(told()["answer"]["told"], "part 0.000 0.000 0.000 mm 0.000 0.000 0.000 deg");
+}
+
+TEST(StudioPoses, AProgramThatNobodyAsksEndsAndAFailureIsTold) {
+  test_files::TempFolder folder;
+  const fs::path program = folder.write("insula_case", "#!/bin/sh\necho '{}'\nexec cat\n");
+  fs::permissions(program, fs::perms::owner_all);
+  StudioPoses poses(program, std::chrono::milliseconds(50));
+  EXPECT_NE(poses.ask("built", "surfaces", std::nullopt)["state"], "failed");
+  EXPECT_GT(poses.pid(), 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(80));
+  poses.look();
+  EXPECT_LE(poses.pid(), 0);
+  StudioPoses wrong(folder.path() / "none");
+  json last;
+  for (int k = 0; k < 500 && (last.is_null() || last["state"] == "starting"); ++k) {
+    last = wrong.ask("built", "surfaces", std::nullopt);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(last["state"], "failed");
+  EXPECT_NE(last["error"].get<std::string>().find("127"), std::string::npos) << last;
+}
+
 TEST_F(StudioTest, AClipIsTriedOverTheNeckOfABuiltCase) {
   const std::string name = ready();
   EXPECT_EQ(ask("try", name).status, 409) << "it is not built";

@@ -23,6 +23,51 @@ const onDisk = (file) => readFileSync(file, 'utf8');
 const item = (page, name, of) => page.getByRole('treeitem').filter({ hasText: `${name}${of}` });
 const saved = (page) => page.getByText('Saved', { exact: true }).waitFor(patience);
 
+/** Adds an element to the chosen one. */
+async function add(page, element) {
+  await page.getByLabel('Element to be added').selectOption(element);
+  await page.getByRole('button', { name: 'Add', exact: true }).click();
+}
+
+/** A block of tissue becomes a scene, from the list of components to the running picture. */
+async function beginFromNothing(page) {
+  const file = join(data, 'scenes/my_block/my_block.xml');
+  await page.getByText('A new scene from nothing').click();
+  await page.getByLabel('Name: letters, digits, _ and -').fill('my block');
+  await page.locator('[data-element=soft_body]').check();
+  await page.getByRole('button', { name: 'Begin the scene' }).click();
+  await page.getByText('letters, digits, _ and - only').waitFor(patience);
+  await page.getByLabel('Name: letters, digits, _ and -').fill('my_block');
+  await shot(page, 'new');
+  assert.deepEqual(await axeFinds(page), []);
+  await page.getByRole('button', { name: 'Begin the scene' }).click();
+  await page.locator('.scene-editor .cm-content').waitFor(patience);
+  await page.locator('.found button').first().waitFor(patience);
+  await page.getByText('Not saved: the scene has errors').waitFor(patience);
+  assert.doesNotMatch(onDisk(file), /soft_body/);
+  check('a scene is begun from nothing, and its problems are listed at once');
+
+  const body = () => item(page, 'soft_body', 'soft_body').click();
+  await body();
+  await page.getByLabel('mesh', { exact: true }).fill('meshes/examples/block.msh');
+  await page.keyboard.press('Enter');
+  for (const element of ['corotational_fem', 'fixed', 'surface']) {
+    await body();
+    await add(page, element);
+  }
+  await saved(page);
+  await waitFor('saved scene', () => /<corotational_fem/.test(onDisk(file)));
+  await page.getByRole('button', { name: 'Look at it' }).click();
+  await page.locator('.live iframe').waitFor(patience);
+  const picture = () => page.frames().find((f) => f !== page.mainFrame() && f.url().startsWith('http'));
+  await waitFor('picture', picture);
+  await picture().waitForFunction(() => window.__insula?.ready, null, patience);
+  await shot(page, 'new_live');
+  await page.getByRole('link', { name: 'All projects' }).click();
+  await page.getByRole('link', { name: 'my_block' }).waitFor(patience);
+  check('a block of tissue is put together from its components, saved by its name and run');
+}
+
 const studio = programs.start('insula', ['studio', '--no-browser', '--port', '0', '--data', data], ownBus());
 const browser = await launch();
 try {
@@ -36,6 +81,8 @@ try {
   await source.selectOption('scenes/training/1_sylvian_fissure.xml');
   await shot(page, 'list');
   assert.deepEqual(await axeFinds(page), []);
+  await beginFromNothing(page);
+  await source.selectOption('scenes/training/1_sylvian_fissure.xml');
   await page.getByRole('button', { name: 'Edit a copy' }).click();
   await page.locator('.scene-editor .cm-content').waitFor(patience);
   await saved(page);

@@ -9,6 +9,7 @@ import { join } from 'node:path';
 import { axeFinds } from './axe.mjs';
 import { check, launch, patience, waitFor } from './browser.mjs';
 import { ownBus, Programs, root } from './programs.mjs';
+import { moveTheVessel, paintAPlaque, project } from './studio_deeds.mjs';
 import { childrenOf, gatewayBelow } from './studio_processes.mjs';
 import { dropped, picture, shots, step, viewport } from './studio_page.mjs';
 
@@ -18,8 +19,6 @@ const surface = readFileSync(join(root, 'meshes/arteries/narrow_neck/wall.ply'))
 const bus = ownBus();
 
 const shot = shots('studio');
-
-const project = (page, name) => page.evaluate(async (n) => (await fetch(`api/studio/project?name=${n}`)).json(), name);
 
 /** Two points of the wall on opposite sides of the proposed neck, as they lie on the page. */
 async function sidesOfNeck(page, { centre, normal, diameter_mm: width }) {
@@ -107,6 +106,9 @@ try {
   await page.getByText('set by clicks', { exact: true }).waitFor(patience);
   check('a choice is undone and made again');
 
+  const places = await paintAPlaque(page, proposal);
+  check(`a part of the wall is painted with ${places} points, undone and made stiffer`);
+
   // The clipping trial takes minutes.
   await page.getByLabel('Play the exercises until scripted hands succeed').uncheck();
   await waitFor('choice', async () => !(await project(page, 'narrow_neck')).choices.rehearse);
@@ -179,6 +181,8 @@ try {
   await waitFor('stiff neck', async () => (await project(page, 'narrow_neck')).choices.walls[0] === 'neck.young=7 MPa');
   assert.deepEqual(await axeFinds(page), []);
   await shot(page, 'walls');
+  const { moved, mm } = await moveTheVessel(page);
+  check(`the vessel is moved by ${mm.toFixed(2)} mm, with its overlap and the sight of its neck`);
   await page.getByRole('button', { name: 'Build', exact: true }).click();
   await page.locator('.stages .now').waitFor(patience);
   await page.getByText('Choices have changed since: build again.').waitFor({ state: 'hidden', ...patience });
@@ -188,6 +192,11 @@ try {
   assert.doesNotMatch(text, /<time_limit/);
   const wall = readFileSync(join(data, 'studio/narrow_neck', built.number, 'narrow_neck/artery.xml'), 'utf8');
   assert.match(wall, /regions="neck" thickness="[0-9.]+ mm" young="7 MPa"/);
+  assert.match(wall, /id="wall_patch_1" spots="[^"]* mm; [^"]*" spot_radius="1 mm" thickness="0.5 mm" young="8 MPa"/);
+  const place = readFileSync(join(data, 'studio/narrow_neck', built.number, 'narrow_neck/place.json'), 'utf8');
+  const shift = JSON.parse(place).shift_mm;
+  assert.ok(Math.hypot(...shift.map((x, k) => x - moved[k])) < 0.01, `${shift}: ${moved}`);
+  check('the painted part and the place are built');
   check('a goal, a limit and the stiffness of the neck are changed by forms, and built');
 
   await page.locator('.clip select').selectOption('angled_60_6');

@@ -141,15 +141,15 @@ describe('elements', () => {
   const [surface, goal] = [declarations.get('surface')!, declarations.get('goal')!];
   it('are added on a line of their own, indented as their neighbours', () => {
     const doc = '<scene>\n    <a/>\n  <!-- end -->\n</scene>\n';
-    expect(applied(doc, withChild(doc, outlineOf(doc)!, surface))).toBe(
+    expect(applied(doc, withChild(doc, outlineOf(doc)!, surface, []))).toBe(
       '<scene>\n    <a/>\n  <!-- end -->\n    <surface/>\n</scene>\n',
     );
     const leaf = '<scene>\n  <a b="1" />\n</scene>';
-    expect(applied(leaf, withChild(leaf, find(leaf, 'a'), goal))).toBe(
+    expect(applied(leaf, withChild(leaf, find(leaf, 'a'), goal, [['hand', 'left']]))).toBe(
       '<scene>\n  <a b="1">\n    <goal hand="left"/>\n  </a>\n</scene>',
     );
     const line = '<scene></scene>';
-    expect(applied(line, withChild(line, outlineOf(line)!, surface))).toBe('<scene>\n  <surface/>\n</scene>');
+    expect(applied(line, withChild(line, outlineOf(line)!, surface, []))).toBe('<scene>\n  <surface/>\n</scene>');
   });
   it('are removed with their line, and comments stay', () => {
     expect(applied(scene, withoutElement(scene, find(scene, 'surface')))).toBe(

@@ -5,6 +5,8 @@ import { Api, contentOf, list, number, numberOrNull, object, text } from '../sta
 import { sent } from './folder/send';
 import { type LibraryClip, libraryOf, type Trial, trialOf } from './clip/trial';
 import { type ExerciseRules, exerciseRulesOf } from './goals/rules';
+import { type Choices, choicesOf, point } from './choices';
+import { type PoseState, poseStateOf, type Question } from './pose/pose';
 import { type ScanFacts, scanFactsOf } from './scan/block';
 
 export type Point = [number, number, number];
@@ -44,44 +46,7 @@ export interface Facts {
   notes: Note[];
 }
 
-export type Neck = { plane: number[] } | { points: number[] } | null;
-
-/** A line along which something was painted or erased, mm. */
-export interface Stroke {
-  erase: boolean;
-  radius_mm: number;
-  points: Point[];
-}
-
-export interface Choices {
-  /** Of a scan: vessel from here up. */
-  threshold: number | null;
-  label: number | null;
-  seed: Point | null;
-  /** Of the scan, only so much around the seed. */
-  aroundMm: number | null;
-  paint: Stroke[];
-  /** A point and the direction of what goes, each. */
-  cuts: number[][];
-  unit: string;
-  mirror: boolean;
-  neck: Neck;
-  inlet: Point | null;
-  rebuildMm: number | null;
-  vertices: number;
-  /** Changes of regions' walls: "neck.young=7 MPa". */
-  walls: string[];
-  rehearse: boolean;
-  site: string;
-  difficulty: number;
-  /** Changes of goals, faults and complications: "3.clip.max_grade=1". */
-  rules: string[];
-  /** That is tried, and built with; '': proposed. */
-  clip: string;
-  liftMm: number | null;
-  slideMm: number | null;
-  turnDeg: number | null;
-}
+export type { Choices, Neck, Stroke } from './choices';
 
 /** As proposed. */
 export interface RegionWall {
@@ -140,52 +105,6 @@ export interface Listed {
   name: string;
   file: string;
   built: boolean;
-}
-
-const numbers = (value: unknown): number[] => (Array.isArray(value) ? value.map(number) : []);
-
-function point(value: unknown): Point {
-  const [x = 0, y = 0, z = 0] = numbers(value);
-  return [x, y, z];
-}
-
-const pointOrNull = (value: unknown): Point | null => (Array.isArray(value) ? point(value) : null);
-
-function neckOf(value: unknown): Neck {
-  const neck = object(value);
-  if (Array.isArray(neck.plane)) return { plane: numbers(neck.plane) };
-  return Array.isArray(neck.points) ? { points: numbers(neck.points) } : null;
-}
-
-function choicesOf(value: unknown): Choices {
-  const c = object(value);
-  return {
-    threshold: numberOrNull(c.threshold),
-    label: numberOrNull(c.label),
-    seed: pointOrNull(c.seed),
-    aroundMm: numberOrNull(c.around_mm),
-    paint: list(c.paint).map((s) => ({
-      erase: s.erase === true,
-      radius_mm: number(s.radius_mm),
-      points: Array.isArray(s.points) ? s.points.map(point) : [],
-    })),
-    cuts: Array.isArray(c.cuts) ? c.cuts.map(numbers) : [],
-    unit: text(c.unit),
-    mirror: c.mirror === true,
-    neck: neckOf(c.neck),
-    inlet: pointOrNull(c.inlet),
-    rebuildMm: numberOrNull(c.rebuild_mm),
-    vertices: number(c.vertices),
-    walls: Array.isArray(c.walls) ? c.walls.map(text) : [],
-    rehearse: c.rehearse === true,
-    site: text(c.site),
-    difficulty: number(c.difficulty),
-    rules: Array.isArray(c.rules) ? c.rules.map(text) : [],
-    clip: text(c.clip),
-    liftMm: numberOrNull(c.lift_mm),
-    slideMm: numberOrNull(c.slide_mm),
-    turnDeg: numberOrNull(c.turn_deg),
-  };
 }
 
 function workOf(value: unknown): Work {
@@ -309,6 +228,16 @@ export class StudioApi {
     url.search = new URLSearchParams({ name, version: String(version) }).toString();
     return url.href;
   }
+
+  /** Of the built case; a question is answered later. */
+  pose = async (name: string, question: Question | null): Promise<PoseState> => {
+    const asked: Record<string, string> = question
+      ? { pose: question.pose.join(), parted: question.parted ? '1' : '0' }
+      : {};
+    return poseStateOf(await this.api.ask('studio/pose', { name, ...asked }));
+  };
+  poseSurface = (name: string, part: string, version: string): string =>
+    `${this.file(name, 'pose_surface', version)}&part=${part}`;
 
   /** A new project. share: gets how much of the file has gone, 0 to 1. */
   async upload(file: File, signal: AbortSignal, share: (done: number) => void): Promise<Project> {

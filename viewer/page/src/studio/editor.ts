@@ -10,6 +10,7 @@ import { FilePanel } from './file_panel';
 import { GoalsPanel } from './goals/goals_panel';
 import { NeckPanel } from './neck_panel';
 import { chosenPlane } from './neck_plane';
+import { PosePanel } from './pose/pose_panel';
 import { ResultPanel } from './result_panel';
 import { ClipPanel } from './clip/clip_panel';
 import { CutPanel } from './scan/cut_panel';
@@ -17,6 +18,7 @@ import { ScanStep } from './scan/scan_step';
 import { Views } from './scan/views';
 import type { ScenesApi } from './scene_editor/api';
 import { SurfaceView } from './surface_view';
+import { PaintPanel } from './wall_paint/paint_panel';
 import { WallPanel } from './wall_panel';
 import { reason } from './wording';
 
@@ -41,6 +43,7 @@ export class Editor {
   private readonly panels: { root: HTMLElement; show(p: Project): void }[];
   private readonly neck: NeckPanel;
   private readonly scan: ScanStep;
+  private readonly pose: PosePanel;
   private readonly views: Views;
   private shown = '';
   private surface = 0;
@@ -62,6 +65,7 @@ export class Editor {
     this.scan = new ScanStep(asks, api);
     this.views = new Views(this.scan.view, this.view.root);
     this.neck = new NeckPanel(asks, this.view, () => this.project && this.mark(this.project));
+    this.pose = new PosePanel(asks, api, this.view);
     this.panels = [
       new FilePanel(asks),
       this.scan,
@@ -73,6 +77,8 @@ export class Editor {
       new GoalsPanel(asks, scenes),
       new ClipPanel(asks, this.view),
       new WallPanel(asks, scenes),
+      new PaintPanel(asks, this.view, scenes),
+      this.pose,
     ];
     this.undo.onclick = () => void this.act('undo');
     this.redo.onclick = () => void this.act('redo');
@@ -89,6 +95,7 @@ export class Editor {
     window.clearTimeout(this.timer);
     window.removeEventListener('keydown', this.keys);
     this.scan.end();
+    this.pose.end();
     this.view.end();
   }
 

@@ -7,6 +7,8 @@ import { faultOf, joined, partsOf, rangeText } from './scene_editor/values';
 
 export interface ParameterValue {
   proposed: string;
+  /** In which it is shown; that of the proposal if it is not given. */
+  unit?: string;
   /** null: nothing. */
   chosen: string | null;
   /** null: as proposed. */
@@ -15,7 +17,7 @@ export interface ParameterValue {
 
 /** words: the label, '': the declaration's own, in English. */
 export function parameterField(p: Parameter, id: string, words: string, value: ParameterValue): HTMLElement {
-  const unit = partsOf(value.proposed)?.unit ?? '';
+  const unit = value.unit ?? partsOf(value.proposed)?.unit ?? '';
   const input = el('input', { type: 'text', autocomplete: 'off', id, 'aria-describedby': `${id}-about` });
   const shown = value.chosen ?? value.proposed;
   const parts = partsOf(shown);

@@ -26,6 +26,8 @@ import type { Facts, Point } from './api';
 import { ball, ring, solidDisc } from './marks';
 import type { NeckPlane } from './neck_plane';
 import { type Cut, cutThrough, partBeyond } from './scan/cut_plane';
+import { PatchRegion } from './wall_paint/patch_region';
+import type { WallPatch } from './wall_paint/patches';
 
 const stillPx = 4; // a press that moves farther turns the view
 const fieldOfView = 35;
@@ -38,6 +40,10 @@ const colours = {
   goes: '#4b8fe0',
 };
 
+/** Of the painted parts of the wall, one after the other and then again. */
+const patchColours = ['#ffd166', '#7bdff2', '#b388eb', '#90be6d', '#f4978e'];
+export const patchColour = (k: number): string => patchColours[k % patchColours.length]!;
+
 export class SurfaceView {
   readonly canvas = el('canvas', { tabindex: '0', role: 'img' });
   readonly root = el('div', { class: 'view' }, this.canvas);
@@ -49,6 +55,9 @@ export class SurfaceView {
   private controls: OrbitControls | null = null;
   private mesh: Mesh<BufferGeometry, MeshStandardMaterial> | null = null;
   private readonly cut = new Group();
+  private gone: ArrayLike<number | boolean> | null = null;
+  private patches: readonly WallPatch[] = [];
+  private region: PatchRegion | null = null;
   private readonly clip = new Group();
   private pressed = new Vector2();
   private waiting = false;
@@ -65,7 +74,12 @@ export class SurfaceView {
     this.canvas.addEventListener('pointerup', (e) => this.released(e));
     this.watch.observe(this.root);
     Object.assign(window, {
-      __studio: { screenOf: (p: Point) => this.screenOf(p), ready: () => this.mesh !== null },
+      __studio: {
+        screenOf: (p: Point) => this.screenOf(p),
+        placeAt: (x: number, y: number) => this.hitAt(x, y)?.toArray() ?? null,
+        colourAt: (x: number, y: number) => this.colourAt(x, y),
+        ready: () => this.mesh !== null,
+      },
     });
   }
 
@@ -87,6 +101,7 @@ export class SurfaceView {
     }
     this.mesh = new Mesh(geometry, new MeshStandardMaterial({ vertexColors: true, roughness: 0.55, side: DoubleSide }));
     this.scene.add(this.mesh);
+    this.region = null;
     this.showCut(null);
     const now = geometry.boundingSphere!;
     if (!before || before.center.distanceTo(now.center) > now.radius || now.radius > 1.5 * before.radius)
@@ -119,14 +134,31 @@ export class SurfaceView {
     this.cut.clear();
     const { mesh, surface } = this;
     if (!mesh || !surface) return;
-    const goes = cut ? partBeyond(surface.positions, surface.triangles, cut) : null;
-    const [wall, gone] = [new Color(colours.wall), new Color(colours.goes)];
-    const paint = new Float32Array(surface.positions.length);
-    for (let v = 0; 3 * v < paint.length; v++) (goes?.[v] ? gone : wall).toArray(paint, 3 * v);
-    mesh.geometry.setAttribute('color', new BufferAttribute(paint, 3));
+    this.gone = cut ? partBeyond(surface.positions, surface.triangles, cut) : null;
+    this.colour();
     const radius = mesh.geometry.boundingSphere!.radius / 6;
     if (cut) this.cut.add(...solidDisc(cut.point, cut.normal, radius, colours.goes));
     this.draw();
+  }
+
+  /** Painted parts of the wall, in colours. */
+  showPatches(patches: readonly WallPatch[]): void {
+    this.patches = patches;
+    this.colour();
+    this.draw();
+  }
+
+  private colour(): void {
+    const { mesh, surface, gone, patches } = this;
+    if (!mesh || !surface) return;
+    if (patches.length > 0) this.region ??= new PatchRegion(surface.positions, surface.triangles);
+    const of = patches.length > 0 ? this.region!.patchOfVertices(patches) : null;
+    const [wall, goes] = [new Color(colours.wall), new Color(colours.goes)];
+    const painted = patches.map((_p, k) => new Color(patchColour(k)));
+    const paint = new Float32Array(surface.positions.length);
+    for (let v = 0; 3 * v < paint.length; v++)
+      (gone?.[v] ? goes : (painted[of?.[v] ?? -1] ?? wall)).toArray(paint, 3 * v);
+    mesh.geometry.setAttribute('color', new BufferAttribute(paint, 3));
   }
 
   private stand(geometry: BufferGeometry, up: Vector3): void {
@@ -173,9 +205,22 @@ export class SurfaceView {
   }
 
   private released(e: PointerEvent): void {
-    if (!this.onPoint || !this.mesh || this.pressed.distanceTo(new Vector2(e.clientX, e.clientY)) > stillPx) return;
-    const hit = this.ray(e.clientX, e.clientY).intersectObject(this.mesh)[0];
-    if (hit) this.onPoint(hit.point.clone());
+    if (!this.onPoint || this.pressed.distanceTo(new Vector2(e.clientX, e.clientY)) > stillPx) return;
+    const hit = this.hitAt(e.clientX, e.clientY);
+    if (hit) this.onPoint(hit);
+  }
+
+  /** The place of the surface at a place of the window; null: there is none. */
+  hitAt(x: number, y: number): Vector3 | null {
+    return (this.mesh && this.ray(x, y).intersectObject(this.mesh)[0]?.point.clone()) ?? null;
+  }
+
+  /** Red, green and blue of the surface at a place of the window; null: there is none. */
+  private colourAt(x: number, y: number): number[] | null {
+    const hit = this.mesh && this.ray(x, y).intersectObject(this.mesh)[0];
+    const colour = this.mesh?.geometry.attributes.color;
+    if (!hit?.face || !colour) return null;
+    return [colour.getX(hit.face.a), colour.getY(hit.face.a), colour.getZ(hit.face.a)];
   }
 
   /** Through a place of the window. */

@@ -12,6 +12,8 @@ export interface SceneCopy {
   /** Paths in the copy: what can be looked at, and all XML files. */
   scenes: string[];
   files: string[];
+  /** All others, such as meshes. */
+  meshes: string[];
   /** The running picture; state: '', 'starting', 'running' or 'ended'. */
   look: { state: string; url: string; error: string };
 }
@@ -61,6 +63,7 @@ export function copyOf(json: unknown): SceneCopy {
     error: text(c.error),
     scenes: texts(c.scenes),
     files: texts(c.files),
+    meshes: texts(c.meshes),
     look: { state: text(look.state), url: text(look.url), error: text(look.error) },
   };
 }
@@ -103,6 +106,7 @@ export class ScenesApi {
 
   scene = async (name: string): Promise<SceneCopy> => copyOf(await this.api.ask('studio/scene', { name }));
   open = async (source: string): Promise<SceneCopy> => copyOf(await this.api.ask('studio/scene_open', {}, { source }));
+  begin = async (name: string): Promise<SceneCopy> => copyOf(await this.api.ask('studio/scene_new', {}, { name }));
   openBuilt = async (project: string): Promise<SceneCopy> =>
     copyOf(await this.api.ask('studio/edit', {}, { name: project }));
   remove = async (name: string): Promise<void> => void (await this.api.ask('studio/scene_remove', {}, { name }));

@@ -4,7 +4,7 @@ import { el } from '../../hud/dom';
 import { text } from '../../languages/text';
 import { reason } from '../wording';
 import { ScenesApi } from './api';
-import { copied, sceneAddress } from './scene_list';
+import { copied, sceneAddress } from './scene_copy';
 
 /** project: its name. say: shows how far it is. */
 export function editButton(project: () => string, say: (words: string) => void): HTMLButtonElement {

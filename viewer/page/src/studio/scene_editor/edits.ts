@@ -41,10 +41,14 @@ function indentAt(doc: string, at: number): string | null {
   return line.trim() === '' ? line : null;
 }
 
-/** A child at the end of an element, on a line of its own, with the parameters that it must have. */
-export function withChild(doc: string, e: OutlineElement, child: ElementKind): Change {
-  const needs = child.parameters.filter((p) => p.required).map((p) => ` ${p.name}="${p.choices[0] ?? ''}"`);
-  const piece = `<${child.name}${needs.join('')}/>`;
+/** A child at the end of an element, on a line of its own, with the attributes that it begins with. */
+export function withChild(
+  doc: string,
+  e: OutlineElement,
+  child: ElementKind,
+  begins: readonly (readonly [string, string])[],
+): Change {
+  const piece = `<${child.name}${begins.map(([name, value]) => ` ${name}="${escaped(value, '"')}"`).join('')}/>`;
   const own = indentAt(doc, e.from) ?? '';
   const last = e.children.at(-1);
   const inner = (last && indentAt(doc, last.from)) ?? `${own}  `;

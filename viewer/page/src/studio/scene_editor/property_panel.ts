@@ -17,15 +17,23 @@ export interface Edits {
   remove(e: OutlineElement): void;
 }
 
+/** Files of a copy as its open file names them. */
+export const meshesFrom = (meshes: readonly string[], opened: () => string) => (): string[] => {
+  const up = '../'.repeat(opened().split('/').length - 1);
+  return meshes.map((file) => up + file);
+};
+
 export class PropertyPanel {
   readonly root = el('section', { class: 'properties', 'aria-label': text('Properties') });
   private readonly ids = el('datalist', { id: 'scene-ids' });
+  private readonly files = el('datalist', { id: 'scene-files' });
   private rows: PropertyRow[] = [];
   private shown = '';
   private element: OutlineElement | null = null;
 
   constructor(
     private readonly declarations: Declarations,
+    private readonly meshes: () => string[],
     private readonly edits: Edits,
   ) {}
 
@@ -34,6 +42,7 @@ export class PropertyPanel {
     this.element = e;
     const now = e ? `${pathOf(e).join('.')} ${e.name}` : '';
     this.ids.replaceChildren(...ids.map((value) => el('option', { value })));
+    this.files.replaceChildren(...this.meshes().map((value) => el('option', { value })));
     if (now !== this.shown) {
       this.shown = now;
       this.write(e);
@@ -59,7 +68,7 @@ export class PropertyPanel {
             place: () => this.element && this.edits.place(this.element, p),
           }),
       );
-      this.root.append(el('p', { lang: 'en' }, kind.doc), ...this.rows.map((r) => r.root), this.ids);
+      this.root.append(el('p', { lang: 'en' }, kind.doc), ...this.rows.map((r) => r.root), this.ids, this.files);
     }
     this.root.append(...this.buttons(e, kind));
   }

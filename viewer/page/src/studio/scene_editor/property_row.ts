@@ -65,6 +65,7 @@ export class PropertyRow {
     const fallback = partsOf(p.fallback);
     input.placeholder = p.units.length > 0 && fallback ? fallback.numbers : p.fallback;
     if (p.reference !== '') input.setAttribute('list', 'scene-ids');
+    if (p.type === 'file') input.setAttribute('list', 'scene-files');
     input.oninput = () => this.check();
     input.onchange = () => this.leave();
     return input;

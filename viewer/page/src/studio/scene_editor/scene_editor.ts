@@ -7,7 +7,7 @@ import { text } from '../../languages/text';
 import { select } from '../fields';
 import { reason } from '../wording';
 import type { Problem, SceneCopy, ScenesApi, SceneText } from './api';
-import type { Declarations, Parameter } from './declarations';
+import type { Declarations, ElementKind, Parameter } from './declarations';
 import { type Change, changedAttribute, withChild, withoutElement } from './edits';
 import { LiveView } from './live_view';
 import {
@@ -20,8 +20,9 @@ import {
   withDescendants,
 } from './outline';
 import { ProblemList } from './problems';
-import { PropertyPanel } from './property_panel';
+import { meshesFrom, PropertyPanel } from './property_panel';
 import type { Seen } from './seen';
+import { startAttributes } from './start_values';
 import { TextPanel } from './text_panel';
 import { TreePanel } from './tree_panel';
 import { VersionSelect } from './version_select';
@@ -64,19 +65,23 @@ export class SceneEditor {
   private constructor(
     private readonly api: ScenesApi,
     private readonly copy: SceneCopy,
-    declarations: Declarations,
+    private readonly declarations: Declarations,
   ) {
     this.scene = copy.scenes[0] ?? '';
     this.content = new TextPanel(declarations, { changed: () => this.changed(), moved: (at) => this.moved(at) });
-    this.properties = new PropertyPanel(declarations, {
-      set: (e, name, value) => this.change(changedAttribute(this.content.content, e, name, value)),
-      place: (e, p) => this.place(e, p),
-      add: (e, child) => this.add(e, withChild(this.content.content, e, child)),
-      remove: (e) => {
-        this.selected = e.parent ? pathOf(e.parent) : [];
-        this.change(withoutElement(this.content.content, e));
+    this.properties = new PropertyPanel(
+      declarations,
+      meshesFrom(copy.meshes, () => this.opened),
+      {
+        set: (e, name, value) => this.change(changedAttribute(this.content.content, e, name, value)),
+        place: (e, p) => this.place(e, p),
+        add: (e, child) => this.add(e, child),
+        remove: (e) => {
+          this.selected = e.parent ? pathOf(e.parent) : [];
+          this.change(withoutElement(this.content.content, e));
+        },
       },
-    });
+    );
     this.versions = new VersionSelect(async (n) => this.content.replace(await api.version(copy.name, this.opened, n)));
     this.live = new LiveView(api, copy.name, () => this.scene, {
       taken: (seen) => void this.trying(this.take(seen)),
@@ -229,7 +234,9 @@ export class SceneEditor {
     if (change) this.content.change(change);
   }
 
-  private add(e: OutlineElement, change: Change): void {
+  private add(e: OutlineElement, child: ElementKind): void {
+    const begins = this.outline ? startAttributes(this.declarations, child, this.outline) : [];
+    const change = withChild(this.content.content, e, child, begins);
     this.selected = [...pathOf(e), e.children.length];
     this.content.change(change);
     if (this.chosen) this.choose(this.chosen);

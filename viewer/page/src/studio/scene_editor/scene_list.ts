@@ -4,23 +4,9 @@ import { el } from '../../hud/dom';
 import { said } from '../../languages/said';
 import { text } from '../../languages/text';
 import { reason } from '../wording';
+import { NewScene } from './new_scene';
+import { copied, sceneAddress } from './scene_copy';
 import type { SceneCopy, ScenesApi, Source } from './api';
-
-const waitMs = 300;
-
-/** Where a copy is edited. */
-export const sceneAddress = (name: string): string => `#scene/${name}`;
-
-/** Waits until it can be edited. */
-export async function copied(api: ScenesApi, begun: SceneCopy): Promise<SceneCopy> {
-  let copy = begun;
-  while (copy.state === 'copying') {
-    await new Promise((r) => setTimeout(r, waitMs));
-    copy = await api.scene(copy.name);
-  }
-  if (copy.state === 'failed') throw new Error(copy.error);
-  return copy;
-}
 
 export class SceneList {
   readonly root = el('section', { class: 'scenes projects' });
@@ -40,6 +26,7 @@ export class SceneList {
         text('A scene is edited as a copy with all of its files. The original stays as it is.'),
       ),
       el('div', { class: 'buttons' }, this.source, this.open),
+      new NewScene(this.api).root,
       this.say,
       this.rows,
     );
