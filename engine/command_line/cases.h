@@ -29,8 +29,8 @@ int cmd_cases_add(const CommandContext& context, const CasesOptions& options);
 /// Copies a scene, or all scenes of a built case, with every file that they name, to a folder that is not there yet.
 /// They need not load, since a copy is there to be edited. Status 0; 2 if that cannot be done.
 int cmd_cases_copy(const CommandContext& context, const CasesOptions& options);
-/// Begins a scene from nothing: FOLDER/NAME.xml, NAME that of the folder, with the shipped example meshes beside it, to be
-/// edited. Status 0; 2 if the folder is there already or has no name of a case.
+/// Begins a scene from nothing: FOLDER/NAME.xml, NAME that of the folder, with the shipped example meshes beside it, to
+/// be edited. Status 0; 2 if the folder is there already or has no name of a case.
 int cmd_cases_new(const CommandContext& context, const CasesOptions& options);
 /// Removes an added case. Status 0; 2 if there is none of that name.
 int cmd_cases_remove(const CommandContext& context, const CasesOptions& options);

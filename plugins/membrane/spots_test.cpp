@@ -91,8 +91,8 @@ TEST(WallSpots, LieInPlaceOfTheWallAroundThem) {
     return area(plate, spot_triangles(wall, plate.vertices, {Vec3(x, 0.01, 0)}, 4e-3, wrong));
   };
   const double whole = 4e-4, left = at(8e-3), right = at(12e-3);
-  const double both = area(
-      plate, spot_triangles(wall, plate.vertices, {Vec3(8e-3, 0.01, 0), Vec3(12e-3, 0.01, 0)}, 4e-3, wrong));
+  const double both =
+      area(plate, spot_triangles(wall, plate.vertices, {Vec3(8e-3, 0.01, 0), Vec3(12e-3, 0.01, 0)}, 4e-3, wrong));
   ASSERT_LT(both, left + right - 1e-6) << "they overlap";
   const Wall around{.thickness = 1e-3, .density = 1000};
   Wall first{.thickness = 3e-3, .density = 1000, .spots = "8 10 0 mm", .spot_radius = 4e-3}, second = first;

@@ -208,8 +208,9 @@ TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
     EXPECT_NE(read_file_bytes(file).find("<exercise site=\"basilar tip\" difficulty=\"4\""), std::string::npos) << file;
   }
   // The scene would be refused if the painted part were not on the placed wall.
-  EXPECT_NE(read_file_bytes(made.path / "artery.xml").find("spot_radius=\"0.8 mm\" thickness=\"0.4 mm\" young=\"2 MPa\""),
-            std::string::npos);
+  EXPECT_NE(
+      read_file_bytes(made.path / "artery.xml").find("spot_radius=\"0.8 mm\" thickness=\"0.4 mm\" young=\"2 MPa\""),
+      std::string::npos);
   const std::string report = read_file_bytes(made.path / "report.html");
   for (const char* part : {"<svg", "worst angle", "dome to neck", "room to the frontal", "closed by flat caps",
                            "a step takes", "3_clipping.xml"})

@@ -43,8 +43,8 @@ struct Line {
 
 // Options whose values have a unit. joined_values() joins the words of such a value.
 const std::vector<std::string> with_unit = {
-    "--seed", "--around", "--rebuild", "--cut",  "--neck",  "--neck-points", "--inlet", "--keep",
-    "--bleb", "--gap",    "--spin",    "--lift", "--slide", "--turn",        "--pose", "--unit",  "--brain-unit"};
+    "--seed", "--around", "--rebuild", "--cut",   "--neck", "--neck-points", "--inlet", "--keep",      "--bleb",
+    "--gap",  "--spin",   "--lift",    "--slide", "--turn", "--pose",        "--unit",  "--brain-unit"};
 
 /// A length or an angle; `take` gets it in the unit option.bare.
 template <class Q>
@@ -214,7 +214,8 @@ void place_options(CLI::App* app, Options& o) {
   shape_to(app, "--pose", Shape::motion, o.pose,
            "where the vessel is moved to, in place of the search: a rotation (its axis times its angle) about the "
            "origin of your file's frame, then a shift into the frame of the lobes");
-  app->add_flag_callback("--no-pose", [&o] { o.pose.reset(); }, "search for the place again");
+  app->add_flag_callback(
+      "--no-pose", [&o] { o.pose.reset(); }, "search for the place again");
   app->add_flag("--in-place", o.in_place, "the input lies in the frame of the lobes (MNI, mm) already");
   app->add_option("--lobes", o.lobes, "folder with lobes of your own, named as in meshes/lobes, in its frame (MNI, mm)")
       ->check(CLI::ExistingDirectory);

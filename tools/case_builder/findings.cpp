@@ -128,11 +128,10 @@ FindingSection wall_findings(const artery::Vessel& v, const Json& wall) {
                               "Change it: insula case wall FOLDER --wall \"neck.young=7 MPa\" --on"));
   const std::vector<PatchOf> patches = patches_from(wall.value("patches", Json::array()));
   for (std::size_t k = 0; k < patches.size(); ++k)
-    s.findings.push_back(
-        fact(fmt::format("painted part {} of the wall", k + 1),
-             fmt::format("{:g} mm thick, {:g} MPa, within {:g} mm of {} point{}", patches[k].thickness_mm,
-                         patches[k].young_mpa, patches[k].radius_mm, patches[k].spots.size(),
-                         patches[k].spots.size() == 1 ? "" : "s")));
+    s.findings.push_back(fact(fmt::format("painted part {} of the wall", k + 1),
+                              fmt::format("{:g} mm thick, {:g} MPa, within {:g} mm of {} point{}",
+                                          patches[k].thickness_mm, patches[k].young_mpa, patches[k].radius_mm,
+                                          patches[k].spots.size(), patches[k].spots.size() == 1 ? "" : "s")));
   add_notes(s, notes_from_json(wall.at("notes")));
   return s;
 }

@@ -24,8 +24,8 @@ struct Stroke {
   std::vector<Point> points;
 };
 
-/// A part of the wall about points of it, with a thickness and a modulus of its own. Texts have their unit; empty: those
-/// of the region in which the first point lies.
+/// A part of the wall about points of it, with a thickness and a modulus of its own. Texts have their unit; empty:
+/// those of the region in which the first point lies.
 struct WallPatch {
   std::vector<Point> points;
   double radius_mm = 1;
@@ -69,8 +69,8 @@ struct Options {
   double gap = 0.4;                  ///< between the wall and the lobes
   double spin = 0;  ///< turns the vessel about the sac's axis, degrees, after which the place is looked for nearby
   std::optional<RigidMotion> pose;  ///< in place of the search: where the vessel is moved to
-  bool keep_spin = false;  ///< no other spin is tried
-  std::string lobes;       ///< folder with lobes as those of meshes/lobes; empty: those
+  bool keep_spin = false;           ///< no other spin is tried
+  std::string lobes;                ///< folder with lobes as those of meshes/lobes; empty: those
   // scenes
   std::string site;                         ///< of the aneurysm, a choice of Exercise::site; empty: not said
   int difficulty = 0;                       ///< 1 to 5; 0: not said

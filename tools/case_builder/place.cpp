@@ -112,8 +112,9 @@ void run_place(const CaseFolder& folder, const fs::path& project, const Options&
   const Approach approach = read_approach(project, o.approach);
   const Fissure fissure = read_fissure(project, o.brain.empty() ? fs::path(o.lobes) : folder.brain(), approach);
   // A vessel that lies in the frame of the author's own brain goes where that went.
-  const std::vector<Placement> all = o.in_place && !o.pose && !o.brain.empty() ? std::vector<Placement>{brain_motion(folder)}
-                                                                    : find_placements(v, fissure, o, progress);
+  const std::vector<Placement> all = o.in_place && !o.pose && !o.brain.empty()
+                                         ? std::vector<Placement>{brain_motion(folder)}
+                                         : find_placements(v, fissure, o, progress);
   progress.step("parting the lobes");
   const std::vector<Candidate> ranked = candidates(v, all, fissure, read_clips(project), o);
   Fitted best = fitted(ranked.front(), fissure, o, progress);

@@ -36,8 +36,8 @@ class PoseView {
   double gap_;
 };
 
-/// Answers each line of `in`, a pose "X Y Z mm RX RY RZ deg" or the same after the word "part", with a line of JSON, until
-/// its end. The first line of the output tells what was written to `surfaces`, a folder.
+/// Answers each line of `in`, a pose "X Y Z mm RX RY RZ deg" or the same after the word "part", with a line of JSON,
+/// until its end. The first line of the output tells what was written to `surfaces`, a folder.
 void answer_poses(const PoseView& view, const fs::path& surfaces, std::istream& in, std::FILE* out);
 
 }  // namespace insula::case_builder

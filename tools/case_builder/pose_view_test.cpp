@@ -51,8 +51,9 @@ TEST(Sight, ASheetOverHalfOfTheNeckHidesHalf) {
   Sight sight = sight_of_neck(v, f);
   EXPECT_NEAR(sight.seen, 1, 1e-12) << "from the side, nothing is before the neck";
   // A sheet before all places with x > 0, from the neck to far up and down.
-  f.obstacles.push_back({"window", {{Vec3(0, -50, -50), Vec3(99, -50, -50), Vec3(99, -50, 50), Vec3(0, -50, 50)},
-                                    {{0, 1, 2}, {0, 2, 3}}}});
+  f.obstacles.push_back(
+      {"window",
+       {{Vec3(0, -50, -50), Vec3(99, -50, -50), Vec3(99, -50, 50), Vec3(0, -50, 50)}, {{0, 1, 2}, {0, 2, 3}}}});
   sight = sight_of_neck(v, f);
   ASSERT_EQ(sight.hidden.size(), 1u);
   EXPECT_EQ(sight.hidden[0].first, "window");
@@ -74,7 +75,8 @@ class PlacedTube : public testing::Test {
     std::vector<Note> notes;
     Options o;
     o.vertices = 900;
-    artery::write_vessel(make_wall(mended(test::tube_with_sac(), "tube", o, {}).surface, o, notes, quiet_), made_.wall());
+    artery::write_vessel(make_wall(mended(test::tube_with_sac(), "tube", o, {}).surface, o, notes, quiet_),
+                         made_.wall());
   }
   Json place(const Options& o) {
     run_place(made_, project_, o, quiet_);

@@ -25,7 +25,8 @@ struct WallChange {
 /// "neck.young=7 MPa". The membrane's declaration says which values are allowed. Throws InputError.
 WallChange read_wall_change(const std::string& text);
 
-/// In SI units. Throws InputError, with `given` in its text, for a value that the membrane's declaration does not allow.
+/// In SI units. Throws InputError, with `given` in its text, for a value that the membrane's declaration does not
+/// allow.
 double wall_value(const std::string& parameter, const std::string& value, const std::string& given);
 
 /// Thickness as of real walls; the sac as stiff as lets it change its volume by some 6 % over a beat, whatever its

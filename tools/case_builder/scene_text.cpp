@@ -117,8 +117,8 @@ std::string painted_parts(const SceneFacts& f) {
     const PatchOf& p = f.patches[i];
     std::string spots;
     for (const Vec3& x : p.spots)
-      spots += fmt::format("{}{:.2f} {:.2f} {:.2f} mm", spots.empty() ? "" : "; ", x.x() + 0.0, x.y() + 0.0,
-                           x.z() + 0.0);
+      spots +=
+          fmt::format("{}{:.2f} {:.2f} {:.2f} mm", spots.empty() ? "" : "; ", x.x() + 0.0, x.y() + 0.0, x.z() + 0.0);
     s += fmt::format(
         "    <membrane id=\"wall_patch_{}\" spots=\"{}\" spot_radius=\"{:g} mm\" thickness=\"{:g} mm\" "
         "young=\"{:g} MPa\" added_mass=\"1 kg/m2\"/>\n",

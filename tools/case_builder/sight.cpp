@@ -10,7 +10,8 @@
 namespace insula::case_builder {
 namespace {
 
-constexpr double before_wall = 0.1;  // mm: so far before the wall a line begins, so that it does not meet its own triangle
+constexpr double before_wall =
+    0.1;  // mm: so far before the wall a line begins, so that it does not meet its own triangle
 constexpr std::size_t most_lines = 40;
 
 Vec3 eye_of(const Approach& approach) {

@@ -59,9 +59,8 @@ double off_wall(const artery::Vessel& v, const Vec3& p) {
 /// Of the region whose vertex is nearest.
 WallOf wall_at(const artery::Vessel& v, const std::vector<WallOf>& walls, const Vec3& p) {
   const auto& x = v.wall.mesh.vertices;
-  const auto nearest = std::min_element(x.begin(), x.end(), [&](const Vec3& a, const Vec3& b) {
-    return (a - p).squaredNorm() < (b - p).squaredNorm();
-  });
+  const auto nearest = std::min_element(
+      x.begin(), x.end(), [&](const Vec3& a, const Vec3& b) { return (a - p).squaredNorm() < (b - p).squaredNorm(); });
   const std::string& region = v.regions[std::size_t(v.region[std::size_t(nearest - x.begin())])];
   for (const WallOf& wall : walls) {
     const auto names = split_blanks(wall.regions);
@@ -116,10 +115,8 @@ Json to_json(const std::vector<PatchOf>& patches) {
   for (const PatchOf& p : patches) {
     Json spots = Json::array();
     for (const Vec3& spot : p.spots) spots.push_back(to_json(spot));
-    out.push_back({{"spots", spots},
-                   {"radius_mm", p.radius_mm},
-                   {"thickness_mm", p.thickness_mm},
-                   {"young_MPa", p.young_mpa}});
+    out.push_back(
+        {{"spots", spots}, {"radius_mm", p.radius_mm}, {"thickness_mm", p.thickness_mm}, {"young_MPa", p.young_mpa}});
   }
   return out;
 }

@@ -20,8 +20,8 @@ struct PatchOf {
   double radius_mm, thickness_mm, young_mpa;
 };
 
-/// The patches on a wall. Points that are off it, since their part of the vessel was cut off, are left out, with a note.
-/// Values that are not given are those of the region at the first point. Options as as_read() gives them.
+/// The patches on a wall. Points that are off it, since their part of the vessel was cut off, are left out, with a
+/// note. Values that are not given are those of the region at the first point. Options as as_read() gives them.
 std::vector<PatchOf> patches_of(const artery::Vessel& vessel, const Options& options, std::vector<Note>& notes);
 
 Json to_json(const std::vector<PatchOf>& patches);

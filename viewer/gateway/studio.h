@@ -40,7 +40,8 @@ class Studio {
   ///                    inspect: {state, error, number, facts},
   ///                    build: {state, error, seconds, stage, percent, step}, built: {current, report, exercises},
   ///                    trial: {state, error, found, current}, play: {state, url, error}}
-  ///   pose?name=&pose=&parted=   StudioPoses::ask() of the built case; pose: six numbers, parted: 1 with the lobes parted
+  ///   pose?name=&pose=&parted=   StudioPoses::ask() of the built case; pose: six numbers, parted: 1 with the lobes
+  ///   parted
   ApiAnswer get(std::string_view path, std::string_view query);
   ///   choose {name, choices}; undo, redo, build, try, cancel, remove, again {name}; play {name, exercise}: the
   ///   project, as above. again: the file is read once more. edit {name}: a copy of the built scenes. What begins with

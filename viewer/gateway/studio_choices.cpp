@@ -143,8 +143,9 @@ const std::map<std::string, Rule>& rules() {
        {[](const Json& v) { return v.is_null() || is_number(v, -360, 360); }, "a turn is from -360 to 360 degrees"}},
       {"walls", {are_changes, "a wall is changed by its region, thickness or young, and a value"}},
       {"wall_patches",
-       {are_patches, "there are 20 painted parts of the wall at most, each with 1 to 200 points, a radius, a thickness "
-                     "and a stiffness"}},
+       {are_patches,
+        "there are 20 painted parts of the wall at most, each with 1 to 200 points, a radius, a thickness "
+        "and a stiffness"}},
       {"pose", {[](const Json& v) { return v.is_null() || are_numbers(v, 6); }, "a place has six numbers"}},
       {"rehearse", {is_switch, "the exercises are played, or not"}},
       {"rules", {are_rule_changes, "a goal is changed by its exercise, its name and a value"}},

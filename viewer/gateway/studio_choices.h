@@ -14,7 +14,8 @@ namespace insula::gateway {
 /// - of the vessel: neck: null | {plane: [6]} | {points: [6]}, inlet: null | [3], keep_mm, vertices,
 ///   walls: ["neck.young=7 MPa"], wall_patches: [{points: [[3]], radius_mm, thickness, young}], the last two texts with
 ///   their unit, "" as the region's.
-/// - of the case: pose: null | [6] (a shift in mm, a rotation vector in degrees), spin_deg: null | number, rehearse, plays, site, difficulty, rules: ["3.clip.max_grade=1"],
+/// - of the case: pose: null | [6] (a shift in mm, a rotation vector in degrees), spin_deg: null | number, rehearse,
+/// plays, site, difficulty, rules: ["3.clip.max_grade=1"],
 ///   clip: "" | name, lift_mm, slide_mm, turn_deg: null | number.
 nlohmann::json first_choices();
 

@@ -28,8 +28,8 @@ void StudioPoses::begin(const fs::path& built, const fs::path& surfaces) {
   busy_ = false;
   facts_ = answer_ = Json();
   said_.clear();
-  error_ = child_.start({program_.string(), "pose", built.string(), "--out", surfaces.string()},
-                        ChildProcess::Input::pipe);
+  error_ =
+      child_.start({program_.string(), "pose", built.string(), "--out", surfaces.string()}, ChildProcess::Input::pipe);
 }
 
 void StudioPoses::hear(std::string_view line) {
@@ -69,7 +69,9 @@ Json StudioPoses::ask(const fs::path& built, const fs::path& surfaces, const std
   if (question) next_ = question;
   look();
   const bool failed = !child_.running();
-  Json out = {{"state", failed ? "failed" : facts_.is_null() ? "starting" : "ready"},
+  Json out = {{"state", failed             ? "failed"
+                        : facts_.is_null() ? "starting"
+                                           : "ready"},
               {"error", error_},
               {"busy", busy_ || next_.has_value()},
               {"facts", facts_},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The vessel of a built case while an author moves it: `insula_case pose` as a program of its own, which answers one pose
-// after the other. One case at a time. Used on the network thread.
+// The vessel of a built case while an author moves it: `insula_case pose` as a program of its own, which answers one
+// pose after the other. One case at a time. Used on the network thread.
 #pragma once
 #include <array>
 #include <chrono>
@@ -25,9 +25,9 @@ class StudioPoses {
   /// program: insula_case. idle: the program ends when nothing was asked for so long.
   explicit StudioPoses(std::filesystem::path program, Clock::duration idle = std::chrono::seconds(60));
 
-  /// {state: "starting" | "ready" | "failed", error, busy, facts, answer}, as tools/case_builder/pose_view.h has facts and
-  /// answer; the answer is the last one. A question that waits while another one is answered gives way to a newer one.
-  /// surfaces: the folder that gets the surfaces.
+  /// {state: "starting" | "ready" | "failed", error, busy, facts, answer}, as tools/case_builder/pose_view.h has facts
+  /// and answer; the answer is the last one. A question that waits while another one is answered gives way to a newer
+  /// one. surfaces: the folder that gets the surfaces.
   nlohmann::json ask(const std::filesystem::path& built, const std::filesystem::path& surfaces,
                      const std::optional<Question>& question);
   void look();

@@ -33,8 +33,9 @@ class StudioScenes {
   ///   scene_version?name=&file=&number=   {text}
   ///   scene_checked?name=           {state: "" | "running" | "done" | "failed", number, error, ok, problems}
   ApiAnswer get(std::string_view path, std::string_view query);
-  ///   scene_new {name}: a scene from nothing, by `insula cases new`. scene_open {source}; scene_check {name, scene, file, text} gives {number}; scene_write {name, file, text} gives
-  ///   {versions}; scene_look {name, scene} and scene_leave {name}: the scene; scene_remove {name}
+  ///   scene_new {name}: a scene from nothing, by `insula cases new`. scene_open {source}; scene_check {name, scene,
+  ///   file, text} gives {number}; scene_write {name, file, text} gives {versions}; scene_look {name, scene} and
+  ///   scene_leave {name}: the scene; scene_remove {name}
   ApiAnswer post(std::string_view path, const nlohmann::json& body);
   /// Copies a scene, or the scenes in the folder of a built case. file: what the copy is named after.
   ApiAnswer open(const std::filesystem::path& from, const std::string& file);
