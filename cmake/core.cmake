@@ -32,7 +32,7 @@ function(insula_kernels out)  # insula_kernels(OUT name FILE...)
   set(${out} ${objects} PARENT_SCOPE)
 endfunction()
 
-# The solver on an OpenCL device: its kernels become a text of the program. Without the headers of OpenCL it is left out.
+# The solver on an OpenCL device: its kernels become a text of the program. It is left out without OpenCL's headers.
 function(insula_opencl list_name)
   set(folder ${PROJECT_SOURCE_DIR}/core/linalg/opencl)
   if(NOT OPENCL_INCLUDE)

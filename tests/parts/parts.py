@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """parts.py SOURCE BUILD CTEST [--check]: which long tests and browser checks this commit runs.
 
-long_tests.txt names the long tests. They are divided into parts of equal time; a commit runs one part, chosen by its
-hash, so a commit always runs the same tests and the commits after each other run all of them. Prints two lines: a regular
+long_tests.txt names the long tests. They are divided into parts of equal time. A commit runs one part, which its hash
+chooses: the same commit always runs the same tests, and a few commits run all of them. Prints two lines: a regular
 expression of the tests to leave out (for ctest -E), and the names of the browser checks to run. --check reads the list
 and says what is wrong with it: a line that names no test, and tests that two lines name.
 """

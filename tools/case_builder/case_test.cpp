@@ -182,6 +182,20 @@ void expect_a_clip_is_tried(const CaseFolder& made) {
   EXPECT_EQ(before, files_of(made.path));
 }
 
+void expect_its_report(const CaseFolder& made) {
+  const std::string report = read_file_bytes(made.path / "report.html");
+  for (const char* part : {"<svg", "worst angle", "dome to neck", "room to the frontal", "closed by flat caps",
+                           "a step takes", "3_clipping.xml"})
+    EXPECT_NE(report.find(part), std::string::npos) << part;
+
+  const Json numbers = read_json(made.path / "report.json");
+  EXPECT_NEAR(numbers.at("neck").at("diameter_mm").get<double>(), read_wall(made.artery()).neck->diameter, 1e-3);
+  EXPECT_GT(numbers.at("neck").at("confidence").get<double>(), 0.8);
+  for (const char* lobe : {"frontal", "temporal", "insula"}) EXPECT_EQ(numbers.at("overlap_mm").at(lobe), 0) << lobe;
+  EXPECT_GE(numbers.at("step_ms").at("p95").get<double>(), numbers.at("step_ms").at("p50").get<double>());
+  EXPECT_EQ(numbers.at("clipping"), read_json(made.path / "scenes.json").at("clipping"));
+}
+
 TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
   insula::test::SceneFolder folder;
   folder.write("vessel.stl", test::stl_text(test::open_tube()));
@@ -211,18 +225,7 @@ TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
   EXPECT_NE(
       read_file_bytes(made.path / "artery.xml").find("spot_radius=\"0.8 mm\" thickness=\"0.4 mm\" young=\"2 MPa\""),
       std::string::npos);
-  const std::string report = read_file_bytes(made.path / "report.html");
-  for (const char* part : {"<svg", "worst angle", "dome to neck", "room to the frontal", "closed by flat caps",
-                           "a step takes", "3_clipping.xml"})
-    EXPECT_NE(report.find(part), std::string::npos) << part;
-
-  const Json numbers = read_json(made.path / "report.json");
-  EXPECT_NEAR(numbers.at("neck").at("diameter_mm").get<double>(), read_wall(made.artery()).neck->diameter, 1e-3);
-  EXPECT_GT(numbers.at("neck").at("confidence").get<double>(), 0.8);
-  for (const char* lobe : {"frontal", "temporal", "insula"}) EXPECT_EQ(numbers.at("overlap_mm").at(lobe), 0) << lobe;
-  EXPECT_GE(numbers.at("step_ms").at("p95").get<double>(), numbers.at("step_ms").at("p50").get<double>());
-  EXPECT_EQ(numbers.at("clipping"), read_json(made.path / "scenes.json").at("clipping"));
-
+  expect_its_report(made);
   expect_a_clip_is_tried(made);
   // A stage again with nothing new changes nothing; with a neck of one's own it moves the neck there and keeps the
   // other choices.
