@@ -46,6 +46,8 @@ file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/test_headers.cpp CONTENT "in
 add_executable(insula_test_headers ${CMAKE_BINARY_DIR}/generated/test_headers.cpp)
 target_link_libraries(insula_test_headers PRIVATE ${test_libs} GTest::gtest_main)
 target_compile_options(insula_test_headers PRIVATE $<$<CONFIG:Release>:-O1>)
+# ccache has given an outdated one.
+set_target_properties(insula_test_headers PROPERTIES CXX_COMPILER_LAUNCHER "")
 target_precompile_headers(insula_test_headers PRIVATE <gtest/gtest.h> <cmath> <filesystem> <fstream> <sstream> <random>
   <nlohmann/json.hpp> ${PROJECT_SOURCE_DIR}/core/sim/simulation.h ${PROJECT_SOURCE_DIR}/core/testing/example.h)
 file(GLOB_RECURSE core_tests CONFIGURE_DEPENDS core/*_test.cpp platform/${INSULA_PLATFORM}/*_test.cpp)
