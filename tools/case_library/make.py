@@ -58,6 +58,8 @@ def build(case, work):
     for region, wall in case.get("walls", {}).items():
         for parameter, value in wall.items():
             words += ["--wall", "%s.%s=%s" % (region, parameter, value)]
+    if "from" in case.get("steady", {}):
+        words += ["--no-rehearse"]
     subprocess.run(words, check=True, cwd=ROOT)
     for path in sorted(folder.iterdir()):
         if path.name not in KEPT:

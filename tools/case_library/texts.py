@@ -61,6 +61,11 @@ def how_moved(case, work):
     said = "The case builder found the place of the clip `%s` by playing." % clip
     said += " In `case_steady.csv` it is moved by %s." % steady if steady else " `case_steady.csv` closes it there."
     said += " In `case_%s.csv` it is moved by %s." % (failing["motion"], shifted(failing))
+    return said
+
+
+def readme(case, work):
+    said = how_moved(case, work)
     parts = [case["about"], "The lesson: " + case["lesson"], said, "Sources of the sizes: " + " ".join(case["sources"])]
     wrap = lambda text: textwrap.fill(text, 118, break_long_words=False, break_on_hyphens=False)
     head = case["title"][0].upper() + case["title"][1:]
