@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <map>
+#include <mutex>
 #include <utility>
 
 #include "core/linalg/opencl/source.h"
@@ -88,13 +90,51 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
   return *this;
 }
 
-Device::Device(const FoundDevice& found) : name_(found.name) {
+namespace {
+
+struct Compiled {
+  cl_context context;
+  cl_program program;
+};
+
+cl_program compile(cl_context context, const FoundDevice& device) {
+  cl_int status = CL_SUCCESS;
+  const char* text = kernel_source();
+  const cl_program program = api()->CreateProgramWithSource(context, 1, &text, nullptr, &status);
+  check(status, "clCreateProgramWithSource");
+  const std::string options = "-cl-std=CL1.2 -D TILE=" + std::to_string(tile) + " -D CHUNK=" + std::to_string(chunk) +
+                              " -D GROUP=" + std::to_string(group) + " -D LINE_GROUP=" + std::to_string(line_group);
+  if (api()->BuildProgram(program, 1, &device.id, options.c_str(), nullptr, nullptr) == CL_SUCCESS) return program;
+  std::string log(1 << 14, '\0');
+  api()->GetProgramBuildInfo(program, device.id, CL_PROGRAM_BUILD_LOG, log.size() - 1, log.data(), nullptr);
+  api()->ReleaseProgram(program);
+  throw DeviceFailure("the kernels do not compile for " + device.name + ": " + log.substr(0, log.find('\0')));
+}
+
+/// All solvers of a device share its compiled kernels, which stay until the end of the process.
+Compiled compiled_for(const FoundDevice& device) {
+  static std::mutex mutex;
+  static std::map<cl_device_id, Compiled> kept;
+  const std::lock_guard lock(mutex);
+  if (const auto found = kept.find(device.id); found != kept.end()) return found->second;
+  cl_int status = CL_SUCCESS;
+  const cl_context context = api()->CreateContext(nullptr, 1, &device.id, nullptr, nullptr, &status);
+  check(status, "clCreateContext");
   try {
-    cl_int status = CL_SUCCESS;
-    context_ = api()->CreateContext(nullptr, 1, &found.id, nullptr, nullptr, &status);
-    check(status, "clCreateContext");
-    queue_ = api()->CreateCommandQueue(context_, found.id, 0, &status);
-    check(status, "clCreateCommandQueue");
+    return kept.emplace(device.id, Compiled{context, compile(context, device)}).first->second;
+  } catch (...) {
+    api()->ReleaseContext(context);
+    throw;
+  }
+}
+
+}  // namespace
+
+Device::Device(const FoundDevice& found) : name_(found.name) {
+  const Compiled compiled = compiled_for(found);
+  context_ = compiled.context;
+  program_ = compiled.program;
+  try {
     build(found.id);
   } catch (...) {
     release();
@@ -102,18 +142,11 @@ Device::Device(const FoundDevice& found) : name_(found.name) {
   }
 }
 
+/// A queue and kernels of its own: the arguments of a kernel belong to one thread.
 void Device::build(cl_device_id id) {
   cl_int status = CL_SUCCESS;
-  const char* text = kernel_source();
-  program_ = api()->CreateProgramWithSource(context_, 1, &text, nullptr, &status);
-  check(status, "clCreateProgramWithSource");
-  const std::string options = "-cl-std=CL1.2 -D TILE=" + std::to_string(tile) + " -D CHUNK=" + std::to_string(chunk) +
-                              " -D GROUP=" + std::to_string(group) + " -D LINE_GROUP=" + std::to_string(line_group);
-  if (api()->BuildProgram(program_, 1, &id, options.c_str(), nullptr, nullptr) != CL_SUCCESS) {
-    std::string log(1 << 14, '\0');
-    api()->GetProgramBuildInfo(program_, id, CL_PROGRAM_BUILD_LOG, log.size() - 1, log.data(), nullptr);
-    throw DeviceFailure("the kernels do not compile for " + name_ + ": " + log.substr(0, log.find('\0')));
-  }
+  queue_ = api()->CreateCommandQueue(context_, id, 0, &status);
+  check(status, "clCreateCommandQueue");
   for (const char* name : kernel_names) {
     kernels_.push_back(api()->CreateKernel(program_, name, &status));
     check(status, "clCreateKernel");
@@ -123,9 +156,7 @@ void Device::build(cl_device_id id) {
 void Device::release() {
   for (cl_kernel k : kernels_)
     if (k != nullptr) api()->ReleaseKernel(k);
-  if (program_ != nullptr) api()->ReleaseProgram(program_);
   if (queue_ != nullptr) api()->ReleaseCommandQueue(queue_);
-  if (context_ != nullptr) api()->ReleaseContext(context_);
 }
 
 Device::~Device() {
