@@ -80,10 +80,11 @@ test('a spot covers a disc of its own side only', () => {
   const region = new PatchRegion(positions, triangles);
   const patch = { ...freshPatch(), points: [[2, 2, 0.01] as Point], radius_mm: 1 };
   const of = region.patchOfVertices([patch]);
-  for (let v = 0; v < of.length; v++) {
+  const expected = of.map((_k, v) => {
     const [x, y, z] = [positions[3 * v]!, positions[3 * v + 1]!, positions[3 * v + 2]!];
-    expect(of[v]).toBe(z === 0 && Math.hypot(x - 2, y - 2, z - 0.01) <= 1 ? 0 : -1);
-  }
+    return z === 0 && Math.hypot(x - 2, y - 2, z - 0.01) <= 1 ? 0 : -1;
+  });
+  expect(of).toEqual(expected);
 });
 
 test('the later of two parts lies over the earlier', () => {
