@@ -45,7 +45,7 @@ export async function paintAPlaque(page, { centre, normal, diameter_mm: width })
   );
   await page.getByRole('button', { name: 'Undo' }).click();
   await waitFor('no painted part', async () => (await patches()).length === 0);
-  await waitFor('the colour before', async () => (await colourAt(page, place))[1] === bare[1]);
+  await waitFor('the colour before', async () => (await colourAt(page, place))?.[1] === bare[1]);
   await page.getByRole('button', { name: 'Redo' }).click();
   await one();
   const part = page.getByRole('group', { name: 'Part 1' });
