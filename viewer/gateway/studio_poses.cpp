@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "viewer/gateway/studio_poses.h"
 
-#include <signal.h>
-
 #include <charconv>
 #include <cmath>
 
@@ -27,7 +25,6 @@ void StudioPoses::begin(const fs::path& built, const fs::path& surfaces) {
   next_.reset();
   busy_ = false;
   facts_ = answer_ = Json();
-  said_.clear();
   error_ =
       child_.start({program_.string(), "pose", built.string(), "--out", surfaces.string()}, ChildProcess::Input::pipe);
 }

@@ -45,7 +45,7 @@ class StudioPoses {
   ChildProcess child_;
   std::optional<Question> next_;
   bool busy_ = false;  ///< a question is being answered
-  std::string error_, said_;
+  std::string error_;
   nlohmann::json facts_, answer_;
 };
 
