@@ -3,9 +3,10 @@
 """parts.py SOURCE BUILD CTEST [--check]: which long tests and browser checks this commit runs.
 
 long_tests.txt names the long tests. They are divided into parts of equal time. A commit runs one part, which its hash
-chooses: the same commit always runs the same tests, and a few commits run all of them. Prints two lines: a regular
-expression of the tests to leave out (for ctest -E), and the names of the browser checks to run. --check reads the list
-and says what is wrong with it: a line that names no test, and tests that two lines name.
+chooses: the same commit always runs the same tests, and a few commits run all of them. Prints two lines: the numbers of
+the tests to run (for ctest -I; a regular expression of all that is left out is too long for ctest), and the names of
+the browser checks to run. --check reads the list and says what is wrong with it: a line that names no test, tests that
+two lines name, and a part of which ctest would run something else.
 """
 import pathlib
 import re
@@ -35,9 +36,11 @@ def divide(lines, parts):
     return home, load
 
 
-def tests_of(build, ctest):
-    out = subprocess.run([ctest, "--test-dir", build, "-N"], capture_output=True, text=True, check=True).stdout
-    return re.findall(r"^ +Test +#\d+: (.*)$", out, re.M)
+def tests_of(build, ctest, *options):
+    """Number and name of each test, with options only of those that they choose."""
+    command = [ctest, "--test-dir", build, "-N", *options]
+    out = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    return {int(number): name for number, name in re.findall(r"^ +Test +#(\d+): (.*)$", out, re.M)}
 
 
 def checks_of(source):
@@ -66,17 +69,33 @@ def mistakes(lines, tests, checks):
     return found
 
 
+def numbers_of(left_out, tests):
+    """What `ctest -I` takes: no range, and the numbers of the tests that no name of left_out is found in."""
+    unwanted = [re.compile(name) for name in left_out if not name.startswith(BROWSER)]
+    chosen = [number for number, name in tests.items() if not any(u.search(name) for u in unwanted)]
+    return ",".join(["0,0,0", *map(str, chosen)])
+
+
+def disagreements(home, build, ctest, tests):
+    """Parts of which ctest, asked with their numbers, would run another number of tests."""
+    for part in range(PARTS):
+        numbers = numbers_of([n for names, p in home.items() for n in names if p != part], tests)
+        if len(tests_of(build, ctest, "-I", numbers)) != len(numbers.split(",")) - 3:
+            yield "part %d: ctest reads its numbers otherwise" % part
+
+
 def main():
     source, build, ctest = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
     lines, checks = list(read(source / "tests/parts/long_tests.txt")), checks_of(source)
+    home, _ = divide(lines, PARTS)
+    tests = tests_of(build, ctest)
     if "--check" in sys.argv:
-        found = mistakes(lines, tests_of(build, ctest), checks)
+        found = mistakes(lines, tests.values(), checks) + list(disagreements(home, build, ctest, tests))
         print("\n".join("tests/parts/long_tests.txt: " + f for f in found) or "%d lines" % len(lines))
         return 1 if found else 0
-    home, _ = divide(lines, PARTS)
     part = commit_of(source) % PARTS
-    left_out = [name for _, names in lines for name in names if home[names] != part]
-    print("|".join("(%s)" % n for n in left_out if not n.startswith(BROWSER)))
+    left_out = [name for names, home_part in home.items() for name in names if home_part != part]
+    print(numbers_of(left_out, tests))
     print(" ".join(c for c in checks if BROWSER + c not in left_out))
     return 0
 

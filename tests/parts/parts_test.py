@@ -41,5 +41,11 @@ class List(unittest.TestCase):
             "browser:four: there is no such test"])
 
 
+class Numbers(unittest.TestCase):
+    def test_they_are_those_of_the_tests_that_no_name_is_found_in(self):
+        tests = {1: "Case.one", 2: "Case.two", 7: "Own/Case.one/(a"}
+        self.assertEqual(parts.numbers_of([r"^Case\.(one|three)$", "browser:page"], tests), "0,0,0,2,7")
+
+
 if __name__ == "__main__":
     unittest.main()

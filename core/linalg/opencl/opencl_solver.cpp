@@ -45,7 +45,7 @@ BodyRows trial_rows(int nodes) {
 }
 
 /// The shortest of up to three steps, s. Ends when one was longer than `enough`. Negative: the solver failed.
-double shortest_step(BodySolver& solver, const BlockMatrix& a, double enough) {
+double time_of_step(BodySolver& solver, const BlockMatrix& a, double enough) {
   using Clock = std::chrono::steady_clock;
   const BodyRows rows = trial_rows(a.nodes());
   std::vector<int> node(std::size_t(a.nodes()));
@@ -94,8 +94,8 @@ SolverTrial try_solvers(const BlockMatrix& pattern) {
   try {
     const std::unique_ptr<BodySolver> device = make_opencl_solver(), processor = make_direct_solver(false);
     const BlockMatrix a = trial_matrix(pattern);
-    out.processor_s = shortest_step(*processor, a, 10);
-    const double seconds = shortest_step(*device, a, 4 * out.processor_s);
+    out.processor_s = time_of_step(*processor, a, 10);
+    const double seconds = time_of_step(*device, a, 4 * out.processor_s);
     if (!device_lost(*device)) out.device_s = seconds;
   } catch (const NoDevice&) {
     out = {};
