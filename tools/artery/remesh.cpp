@@ -218,14 +218,16 @@ class Remesher {
         if (is_rim(h)) sum += 0.5 * at(m_.source(h));
       return sum;
     }
-    Vec3 sum = Vec3::Zero(), normal = Vec3::Zero();
+    Vec3 sum = Vec3::Zero(), normal = Vec3::Zero(), neighbours = Vec3::Zero();
     double weight = 0;
     for (const H h : CGAL::halfedges_around_target(v, m_)) {
       const Vec3 a = at(m_.source(h)), b = at(m_.target(m_.next(h)));
+      neighbours += a / double(m_.degree(v));
       const Vec3 twice = (b - p).cross(a - p), centre = (a + b + p) / 3;
       const double l = wanted(centre), w = twice.norm() / (l * l * l);
       sum += w * centre, weight += w, normal += twice;
     }
+    if (!(weight > 0)) return neighbours;  // triangles without an area are opened
     const Vec3 n = normal.normalized(), d = sum / weight - p;
     return p + d - d.dot(n) * n;
   }

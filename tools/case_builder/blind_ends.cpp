@@ -271,9 +271,16 @@ Tube tube_at(const TriMesh& m, const std::vector<Loop>& lines) {
   return best;
 }
 
+/// Whether a point lies on a cap or at its rim. A vessel that leaves a volume aslant has a long cap, so what counts is
+/// the distance from its vertices, not from its centre.
 bool on_cap(const artery::Surface& s, const Vec3& p) {
-  return std::any_of(s.caps.begin(), s.caps.end(),
-                     [&](const artery::CapPlane& cap) { return (p - cap.centre).norm() < 1.5 * cap.radius; });
+  for (std::size_t t = 0; t < s.patch.size(); ++t) {
+    if (s.patch[t] < 0) continue;
+    const double near = 0.5 * s.caps[std::size_t(s.patch[t])].radius;
+    for (const int v : s.mesh.triangles[t])
+      if ((s.mesh.vertices[std::size_t(v)] - p).norm() < near) return true;
+  }
+  return false;
 }
 
 }  // namespace

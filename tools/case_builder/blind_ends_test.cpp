@@ -8,6 +8,7 @@
 
 #include "tools/artery/generated_artery_for_test.h"
 #include "tools/artery/import_parts.h"
+#include "tools/case_builder/openings.h"
 
 namespace insula::case_builder {
 namespace {
@@ -107,6 +108,22 @@ TEST(BlindEnds, KnownEndsAndTheSacBetweenThemStay) {
     cut_blind_ends(s, notes);
     EXPECT_TRUE(notes.empty()) << a.name << ": " << notes.front().text;
     EXPECT_EQ(s.mesh.triangles.size(), triangles) << a.name;
+  }
+}
+
+/// As the border of a scan cuts a vessel that leaves it at a small angle.
+TEST(BlindEnds, EndsThatWereCutAslantAreNotCutAgain) {
+  for (const GeneratedArtery& a : some_arteries()) {
+    Surface s = a.surface();
+    s.caps.clear();
+    std::fill(s.patch.begin(), s.patch.end(), -1);
+    const std::vector<TrueEnd> ends = true_ends(a);
+    for (const TrueEnd& e : ends)
+      cut_off(s, e.at - 3.5 * e.radius * e.outward, (e.outward + 2.5 * e.outward.unitOrthogonal()).normalized(), "end");
+    ASSERT_EQ(s.caps.size(), ends.size()) << a.name;
+    std::vector<Note> notes;
+    cut_blind_ends(s, notes);
+    EXPECT_TRUE(notes.empty()) << a.name << ": " << notes.front().text;
   }
 }
 
