@@ -4,8 +4,8 @@
 set(INSULA_TEST_DEFS INSULA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" INSULA_BINARY_DIR="${CMAKE_BINARY_DIR}")
 # Long tests start first, so that no core idles at the end: their COST is the order of their seconds. A clean checkout
 # has no measured times.
-function(insula_test target)  # insula_test(name SOURCES ... LIBS ... [SERIAL] [COST seconds])
-  cmake_parse_arguments(T "SERIAL" "COST" "SOURCES;LIBS" ${ARGN})
+function(insula_test target)  # insula_test(name SOURCES ... LIBS ... [SERIAL] [COST seconds] [TIMEOUT seconds])
+  cmake_parse_arguments(T "SERIAL" "COST;TIMEOUT" "SOURCES;LIBS" ${ARGN})
   if(T_SOURCES AND BUILD_TESTING)
     add_executable(${target} ${T_SOURCES})
     target_link_libraries(${target} PRIVATE ${T_LIBS} GTest::gtest_main)
@@ -20,8 +20,11 @@ function(insula_test target)  # insula_test(name SOURCES ... LIBS ... [SERIAL] [
     if(T_COST)
       set(cost COST ${T_COST})
     endif()
+    if(NOT T_TIMEOUT)
+      set(T_TIMEOUT 600)
+    endif()
     gtest_discover_tests(${target} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
-      PROPERTIES TIMEOUT 600 RUN_SERIAL $<BOOL:${T_SERIAL}> ${cost})
+      PROPERTIES TIMEOUT ${T_TIMEOUT} RUN_SERIAL $<BOOL:${T_SERIAL}> ${cost})
   endif()
 endfunction()
 if(NOT BUILD_TESTING)
