@@ -11,7 +11,8 @@
 namespace insula {
 namespace {
 
-constexpr double trace = 0.1;  // share of neck or sac below which there is no remnant
+constexpr double trace = 0.1;                  // share of neck or sac below which there is no remnant
+constexpr SacRemnant::Open all_open{};  // without any clip
 
 }  // namespace
 
@@ -120,7 +121,7 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
   out.grade = sealed ? grade(open) : 5;
   for (const ClipState& c : clips) {
     if (!on_neck(c, centre)) continue;
-    const SacRemnant::Open without = open_past(clips, centre, &c);
+    const SacRemnant::Open without = out.clips == 1 ? all_open : open_past(clips, centre, &c);
     out.needed += without.neck > open.neck + trace || without.sac > open.sac + trace;
   }
   return out;

@@ -39,8 +39,9 @@ class NeckJudge {
 
   /// False if the vessel has no aneurysm (no neck, or no region "sac").
   bool attach(const ShellBody& vessel);
-  /// `sealed`: no blood passes the neck. Allocates nothing and has no side effects.
   Vec3 neck() const;  ///< present middle of the rim at the neck's plane, scene frame, m
+  /// `sealed`: no blood passes the neck. Allocates nothing and has no side effects. With several clips on the neck it
+  /// measures once for each of them and once for all.
   NeckJudgement judge(const std::vector<ClipState>& clips, bool sealed) const;
 
  private:
