@@ -71,7 +71,7 @@ inline SolverProblem make_problem(int nx, int ny, int nz, int m, unsigned seed) 
 
 // Numbers here are of the size of one, and A is diagonally dominant: errors are a few units in the last place.
 template <class Made>
-class BodySolverContract : public testing::Test {
+class BodySolverContract : public ::testing::Test {
  protected:
   void SetUp() override {
     solver = Made::make();
