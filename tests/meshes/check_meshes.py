@@ -23,6 +23,10 @@ NODES = {
     "temporal.msh": (280, 380),
     "right_frontal.msh": (420, 560),
     "left_frontal.msh": (300, 420),
+    "basal_interhemispheric/right_frontal.msh": (300, 420),
+    "basal_interhemispheric/left_frontal.msh": (250, 370),
+    "pretemporal/frontal.msh": (220, 320),
+    "pretemporal/temporal.msh": (160, 240),
     "pterional/frontal.msh": (300, 400),
     "pterional/temporal.msh": (190, 280),
 }

@@ -18,7 +18,9 @@ class ShippedApproach : public testing::TestWithParam<const char*> {
   const fs::path project = find_project(INSULA_SOURCE_DIR);
   const Approach approach = read_approach(project, GetParam());
 };
-INSTANTIATE_TEST_SUITE_P(All, ShippedApproach, testing::Values("sylvian", "interhemispheric", "pterional"),
+INSTANTIATE_TEST_SUITE_P(All, ShippedApproach,
+                         testing::Values("sylvian", "interhemispheric", "basal_interhemispheric", "pretemporal",
+                                         "pterional"),
                          [](const auto& one) { return std::string(one.param); });
 
 TEST_P(ShippedApproach, ItsScenePartHasItsLobesAndHoldsTheNodesThatItSays) {
@@ -59,7 +61,8 @@ TEST(Approaches, AnUnknownNameIsRefusedWithThoseThatThereAre) {
     read_approach(find_project(INSULA_SOURCE_DIR), "transorbital");
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("interhemispheric, pterional, sylvian"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("interhemispheric, pretemporal, pterional, sylvian"), std::string::npos)
+        << e.what();
   }
 }
 

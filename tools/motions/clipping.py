@@ -17,6 +17,7 @@
 4_rupture_steady        the dome ruptures; suction; temporary clip on the parent artery; neck clipped; temporary clip
                         removed
 4_rupture_late          the same rupture, but nobody clips
+two_clips_steady        the clips of SHARED, in OUTPUT_FOLDER/../cases; two_clips_one_clip: the first one alone
 clipping_*_steady       the same as 3_clipping_steady for the other arteries, in OUTPUT_FOLDER/../cases
 A clip's place is given by where its blades' middle is, where they point to and in which direction they close; the
 applier's pose follows from the clip's own grip. The same input gives the same bytes.
@@ -45,6 +46,12 @@ TOO_SHORT = dict(lift=0, slide=-2.2, turn=6, pitch=6, side=0.3)
 # A curved clip beside the short one. Lower its blades press the wall against the first one with more than 0.3 N;
 # farther in its tips press on the floor; farther aside one blade meets the dome before the other.
 SECOND = dict(lift=1.6, slide=0.3, turn=-6, pitch=5, side=0.1, press=0, push=0)
+# Two clips that share a neck: the first one lies as low as a good one and nearer to the surgeon, and the tips of the
+# second one, which lies above it, come down to the neck where the first one ends.
+SHARED = [
+    ("angled", dict(lift=-0.4, slide=-1.2, turn=6, pitch=8, side=0.3, press=0.2, push=0)),
+    ("curved", dict(lift=1.7, slide=0, turn=-6, pitch=1, side=0.1, press=0, push=0)),
+]
 # A fenestrated clip from the side of the inferior branch. Its stem stands along the dome's axis. Its window takes the
 # branch, so that the blades' root reaches the edge of the flattened neck. Rolled less, its shaft meets the bone and a
 # blade the floor. Rolled more, or farther aside, a blade meets the bleb.
@@ -340,7 +347,11 @@ def exercise_3(folder):
     beside = field.neck(Clip("angled"), -0.9, 2.2, -45, 2, 1.5)
     one_clip(folder / "3_clipping_perforator.csv", "angled", at(beside), 4)
     listened(folder / "3_clipping_listening.csv", field)
+    shared = [(clip, lambda hand, at=field.placement(place, clip): place_clip(hand, *at)) for clip, place in SHARED]
     cases = folder.parent / "cases"
+    if cases.is_dir():
+        clips(cases / "two_clips_steady.csv", shared, 4)
+        clips(cases / "two_clips_one_clip.csv", shared[:1], 4)
     for case in NECK:
         if case != CASE and cases.is_dir():
             one_clip(cases / f"clipping_{case}_steady.csv", "angled", Field(case).clip_neck)
