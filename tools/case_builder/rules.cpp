@@ -8,6 +8,7 @@
 #include "core/scene/expand.h"
 #include "core/xml/document.h"
 #include "engine/reports/svg_plot.h"
+#include "tools/case_builder/assignment.h"
 #include "tools/case_builder/declarations.h"
 
 namespace insula::case_builder {
@@ -125,18 +126,20 @@ std::string RuleChange::text() const {
 }
 
 RuleChange read_rule_change(const std::string& text) {
-  const std::size_t sign = text.find('='), first = text.find('.'), last = text.rfind('.', sign);
   RuleChange out;
   const auto name = [](const std::string& s) {
     return !s.empty() && std::all_of(s.begin(), s.end(), [](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
     });
   };
-  if (sign != std::string::npos && first == 1 && text[0] >= '1' && text[0] <= '4' && sign < 200) {
-    out.exercise = text[0] - '0', out.value = text.substr(sign + 1);
+  const auto given = read_assignment(text);
+  const std::string at = given ? given->name : "";
+  const std::size_t first = at.find('.'), last = at.rfind('.');
+  if (first == 1 && at[0] >= '1' && at[0] <= '4' && at.size() < 200) {
+    out.exercise = at[0] - '0', out.value = given->value;
     out.off = last == first && out.value == "off";
-    out.rule = text.substr(2, (last == first ? sign : last) - 2);
-    if (last != first) out.parameter = text.substr(last + 1, sign - last - 1);
+    out.rule = last == first ? at.substr(2) : at.substr(2, last - 2);
+    if (last != first) out.parameter = at.substr(last + 1);
     if (name(out.rule) && (out.off || name(out.parameter))) return out;
   }
   throw InputError("\"" + text +
