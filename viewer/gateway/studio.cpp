@@ -29,9 +29,8 @@ std::string state_of(const StudioProject& p, const char* what) {
 constexpr std::size_t most_uploads = 10'000;
 
 bool is_upload_name(const std::string& name) {
-  return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
-  });
+  return !name.empty() && name.size() <= 64 &&
+         std::all_of(name.begin(), name.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
 }
 
 /// As a word of a shell.

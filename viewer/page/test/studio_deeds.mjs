@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { axeFinds } from './axe.mjs';
 import { patience, waitFor } from './browser.mjs';
-import { picture, shots, step } from './studio_page.mjs';
+import { shots } from './studio_page.mjs';
 
 const shot = shots('studio');
 
@@ -73,9 +73,8 @@ export async function paintAPlaque(page, { centre, normal, diameter_mm: width })
   await part.getByLabel('Stiffness (Young’s modulus)').fill('8');
   await page.keyboard.press('Tab');
   await waitFor('a stiffer part', async () => (await patches())[0].young === '8 MPa');
-  await part.getByRole('button', { name: 'Paint more' }).click();
   await inSight();
-  await drag(page, await screenOf(dome), [-6, -34]);
+  await drag(page, await screenOf(dome), [-6, -34]); // the brush is still held
   await waitFor('a larger part', async () => (await patches())[0].points.length > painted.points.length);
   const grown = (await patches())[0].points.length;
   await part.getByRole('button', { name: 'Erase' }).click();
@@ -140,7 +139,6 @@ export async function moveTheVessel(page) {
     assert.ok(Math.abs(parseFloat(await told(lobe)) - overlap[lobe]) < 0.011, `${lobe}: ${await told(lobe)}`);
   assert.match(await told('seen'), /^\d+ %$/);
   await shot(page, 'place');
-  await picture(page, 'place', step(page, '10. The place'));
   const before = await page.evaluate(() => window.__pose.pose());
 
   // By the middle, in the plane of the picture. What is told follows the hand.
@@ -164,7 +162,7 @@ export async function moveTheVessel(page) {
 
   // Beside it, a drag looks from elsewhere.
   const box = await page.locator('.pose-view canvas').boundingBox();
-  await drag(page, [box.x + 40, box.y + box.height - 60], [130, -50]);
+  await drag(page, [box.x + 40, box.y + 60], [130, -50]);
   assert.deepEqual(await pose(), turned);
   await shot(page, 'looked', { fullPage: false });
 

@@ -69,7 +69,6 @@ export class PosePanel {
       ),
       el('div', { class: 'buttons' }, this.open, this.move, this.turn, this.proposed),
       this.say,
-      this.facts,
     );
     this.lay();
   }
@@ -137,6 +136,8 @@ export class PosePanel {
     const { name } = this.project!;
     const pose = this.project!.choices.pose ?? state.facts.pose;
     picture.pose = pose;
+    // The numbers are read while a hand drags in the picture.
+    picture.root.append(this.facts);
     this.view.root.append(picture.root);
     this.mode(false);
     setText(this.say, howTo());

@@ -8,6 +8,7 @@ import {
   DoubleSide,
   Group,
   Mesh,
+  MeshBasicMaterial,
   MeshStandardMaterial,
   PerspectiveCamera,
   Scene,
@@ -26,8 +27,8 @@ const vessel = 'vessel';
 const far = 75; // mm, of the eye from the neck
 const looks: Record<string, [string, number]> = {
   vessel: ['#c8443b', 1],
-  insula: ['#b9a08d', 0.9],
-  retractors: ['#9fb0bd', 0.9],
+  insula: ['#b9a08d', 1],
+  retractors: ['#9fb0bd', 0.8],
 };
 const lobe: [string, number] = ['#d9b8a6', 0.4];
 
@@ -35,6 +36,17 @@ async function geometryAt(url: string): Promise<BufferGeometry> {
   const geometry = await new PLYLoader().loadAsync(url);
   geometry.computeVertexNormals();
   return geometry;
+}
+
+/** Of what is transparent, only the nearest surface is seen: its depth is drawn before its colour. */
+function meshOf(geometry: BufferGeometry, color: string, opacity: number): Mesh {
+  const transparent = opacity < 1;
+  const look = { color, opacity, transparent, depthWrite: !transparent, roughness: 0.6, side: DoubleSide };
+  const mesh = new Mesh(geometry, new MeshStandardMaterial(look));
+  if (!transparent) return mesh;
+  const front = new Mesh(geometry, new MeshBasicMaterial({ colorWrite: false, side: DoubleSide }));
+  front.renderOrder = 1; // after what is seen through it
+  return mesh.add(front);
 }
 
 export class PoseView {
@@ -99,16 +111,7 @@ export class PoseView {
       this.facts.surfaces.map(async (name) => [name, await geometryAt(url(name))] as const),
     );
     for (const [name, geometry] of loaded) {
-      const [color, opacity] = looks[name] ?? lobe;
-      const material = new MeshStandardMaterial({
-        color,
-        opacity,
-        transparent: opacity < 1,
-        depthWrite: opacity === 1,
-        roughness: 0.6,
-        side: DoubleSide,
-      });
-      const mesh = new Mesh(geometry, material);
+      const mesh = meshOf(geometry, ...(looks[name] ?? lobe));
       if (name === vessel) mesh.position.set(...this.facts.neck).negate();
       (name === vessel ? this.pivot : this.scene).add(mesh);
       this.whole.set(mesh, geometry);
@@ -141,6 +144,7 @@ export class PoseView {
     if (!mesh || mesh.geometry === geometry) return;
     if (mesh.geometry !== this.whole.get(mesh)) mesh.geometry.dispose();
     mesh.geometry = geometry;
+    for (const front of mesh.children) (front as Mesh).geometry = geometry;
   }
 
   get pose(): Pose {
