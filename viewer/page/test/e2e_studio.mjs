@@ -185,10 +185,11 @@ try {
   const strands = page.getByRole('group', { name: 'Strands to the frontal lobe' });
   await strands.getByLabel('How densely they stand').fill('30');
   await strands.getByLabel('How densely they stand').press('Tab');
+  await waitFor('a density', async () => (await project(page, 'narrow_neck')).choices.rules.length === 3);
   await strands.getByLabel('Stiffness').fill('80');
   await strands.getByLabel('Stiffness').press('Tab');
-  const [density, stiffness] = ['2.to_frontal.density=30 1/cm2', '2.to_frontal.stiffness=80 N/m'];
-  const rules = ['3.clip.max_grade=1', '3.time=off', density, stiffness];
+  const ofStrands = ['2.to_frontal.density=30 1/cm2', '2.to_frontal.stiffness=80 N/m'];
+  const rules = ['3.clip.max_grade=1', '3.time=off', ...ofStrands];
   const ruled = () => waitFor('changes', async () => (await project(page, 'narrow_neck')).choices.rules.length === 4);
   await ruled();
   assert.deepEqual((await project(page, 'narrow_neck')).choices.rules, rules);

@@ -138,7 +138,7 @@ export async function moveTheVessel(page) {
   for (const lobe of ['frontal', 'temporal', 'insula'])
     assert.ok(Math.abs(parseFloat(await told(lobe)) - overlap[lobe]) < 0.011, `${lobe}: ${await told(lobe)}`);
   assert.match(await told('seen'), /^\d+ %$/);
-  await shot(page, 'place');
+  await shot(page, 'place', { fullPage: false });
   const before = await page.evaluate(() => window.__pose.pose());
 
   // By the middle, in the plane of the picture. What is told follows the hand.
@@ -158,7 +158,7 @@ export async function moveTheVessel(page) {
 
   const { along, turned } = await alongAndAround(page, moved, { pose, parted, handle });
   assert.deepEqual(await axeFinds(page), []);
-  await shot(page, 'moved');
+  await shot(page, 'moved', { fullPage: false });
 
   // Beside it, a drag looks from elsewhere.
   const box = await page.locator('.pose-view canvas').boundingBox();
