@@ -96,6 +96,7 @@ const browser = await launch();
 try {
   const { address } = await programs.told(studio, /studio is at (\S+)/);
   const page = await browser.newPage({ viewport: { width: 1366, height: 900 } });
+  page.setDefaultTimeout(patience.timeout);
   await page.goto(address);
   const source = page.getByLabel('Scene to be copied');
   await source

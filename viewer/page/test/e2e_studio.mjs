@@ -83,6 +83,7 @@ const browser = await launch();
 try {
   let { address } = await start();
   const page = await browser.newPage({ viewport });
+  page.setDefaultTimeout(patience.timeout);
   await page.goto(address);
   await page.getByText('There are no projects yet.').waitFor(patience);
   assert.deepEqual(await axeFinds(page), []);

@@ -93,13 +93,13 @@ const apart = (a, b) => Math.hypot(...[0, 1, 2].map((k) => a[k] - b[k]));
 const onArrowMm = 3.6;
 const onRingMm = 4.5;
 
-/** The arrow that lies most across the view: where it is taken, and 16 px along it. */
+/** The arrow that lies most across the view: where it is taken, and 9 px along it. */
 async function longestArrow(handle) {
   const [x, y] = await handle(0, 0, 0);
   const ends = await Promise.all([0, 1, 2].map((k) => handle(...[0, 1, 2].map((j) => (j === k ? onArrowMm : 0)))));
   const length = ([a, b]) => Math.hypot(a - x, b - y);
   const end = ends.reduce((best, one) => (length(one) > length(best) ? one : best));
-  return [end, [(16 * (end[0] - x)) / length(end), (16 * (end[1] - y)) / length(end)]];
+  return [end, [(9 * (end[0] - x)) / length(end), (9 * (end[1] - y)) / length(end)]];
 }
 
 /** Along one arrow, where nothing is turned; then around a ring, where the neck stays. */
@@ -143,7 +143,7 @@ export async function moveTheVessel(page) {
 
   // By the middle, in the plane of the picture. What is told follows the hand.
   const middle = await handle(0, 0, 0);
-  await drag(page, middle, [14, -9], async () => {
+  await drag(page, middle, [7, -4], async () => {
     await parted(false);
     await shot(page, 'moving', { fullPage: false });
     assert.equal(await pose(), null, 'nothing is chosen before the release');

@@ -154,7 +154,6 @@ export class PosePanel {
     const answer = JSON.stringify(a);
     if (!picture || answer === this.pictured) return;
     this.pictured = answer;
-    setText(this.say, a.sound ? howTo() : text('The lobes would be crushed here. Move the vessel to where it fits.'));
     if (!a.parted || !a.sound || !samePose(a.pose, picture.pose)) return picture.showWhole();
     const url = (surface: string) => this.api.poseSurface(name, surface, this.begun);
     picture.showParted(a.surfaces, url).catch((e: unknown) => setText(this.say, reason(e)));
@@ -171,6 +170,11 @@ export class PosePanel {
 
   private tell(a: PoseAnswer, name: string): void {
     this.showLobes(a, name);
+    if (!a.sound) {
+      // Numbers of crushed lobes would tell nothing.
+      const words = text('The lobes would be crushed here. Move the vessel to where it fits.');
+      return this.facts.replaceChildren(el('caption', { class: 'bad', 'data-parted': 'true' }, words));
+    }
     const row = (what: string, value: string, good: boolean, id: string) =>
       el('tr', { 'data-what': id }, el('th', { scope: 'row' }, what), el('td', { class: good ? '' : 'bad' }, value));
     const mm = (value: number) => `${fixed(value, 2)} mm`;
