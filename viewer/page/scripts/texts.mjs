@@ -41,6 +41,13 @@ export const exerciseTexts = () => JSON.parse(readFileSync(kept, 'utf8'));
 /** Messages of the case builder, as its page shows them in English. */
 export const builderTexts = () => JSON.parse(readFileSync(join(here, 'builder_texts.json'), 'utf8'));
 
+/** Its sources, with texts that go on over several lines in one piece. */
+export function builderSources() {
+  const of = join(project, 'tools/case_builder');
+  const files = readdirSync(of).filter((f) => f.endsWith('.cpp') && !f.endsWith('_test.cpp'));
+  return files.map((f) => readFileSync(join(of, f), 'utf8').replace(/"\s*\n\s*"/g, '')).join('\n');
+}
+
 let known;
 
 /** All keys: {key, where}. Throws for a text() whose message is no literal. The sources are read once. */

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The messages of the case builder that catalogues translate are those that it says.
-import { readdirSync, readFileSync } from 'node:fs';
-import { fileURLToPath } from 'node:url';
 import { expect, it } from 'vitest';
-import { builderTexts } from '../scripts/texts.mjs';
+import { builderSources, builderTexts } from '../scripts/texts.mjs';
 import { withoutNumbers } from '../src/languages/said';
 import { forThePage } from '../src/studio/wording';
 
-const folder = fileURLToPath(new URL('../../../tools/case_builder/', import.meta.url));
-
-/** All sources, with texts that go on over several lines in one piece. */
-const said = readdirSync(folder)
-  .filter((file) => file.endsWith('.cpp') && !file.endsWith('_test.cpp'))
-  .map((file) => readFileSync(folder + file, 'utf8').replace(/"\s*\n\s*"/g, ''))
-  .join('\n');
+const sources = builderSources();
 
 /** Between numbers, names and what the page says in other words. */
 const longestPiece = (key: string): string =>
@@ -22,7 +14,7 @@ const longestPiece = (key: string): string =>
     .reduce((longest, piece) => (piece.length > longest.length ? piece : longest));
 
 it('are said by the case builder', () => {
-  const wrong = builderTexts().filter(({ key }) => !said.includes(longestPiece(key)));
+  const wrong = builderTexts().filter(({ key }) => !sources.includes(longestPiece(key)));
   expect(wrong.map(({ key }) => key)).toEqual([]);
 });
 
