@@ -8,6 +8,7 @@
 
 #include "core/base/text.h"
 #include "core/model/formats/file_bytes.h"
+#include "tools/case_builder/assignment.h"
 #include "tools/case_builder/brain.h"
 #include "tools/case_builder/fissure.h"
 #include "tools/case_builder/grid_surface.h"
@@ -33,11 +34,7 @@ bool is_lobe(const Approach& approach, const std::string& name) {
 }
 
 /// "NAME=REST", or an empty name.
-std::pair<std::string, std::string> named(const std::string& text) {
-  const std::size_t sign = text.find('=');
-  return sign == std::string::npos ? std::pair(std::string(), text)
-                                   : std::pair(text.substr(0, sign), text.substr(sign + 1));
-}
+Assignment named(const std::string& text) { return read_assignment(text).value_or(Assignment{"", text}); }
 
 TriMesh read_lobe_surface(const fs::path& file, const std::string& what, const Options& o, std::vector<Note>& notes) {
   if (!fs::exists(file)) fail(file, "does not exist");

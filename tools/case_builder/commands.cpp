@@ -242,7 +242,7 @@ void scene_options(CLI::App* app, Options& o) {
                    {.bare = "mm", .min = "-15 mm", .max = "15 mm", .doc = "of the blades' middle beyond the neck's"});
   app->add_option_function<std::vector<std::string>>(
          "--rule", [&o](const std::vector<std::string>& v) { o.rules = v; },
-         "a goal, fault, clock or complication of an exercise: EXERCISE.ID.PARAMETER=VALUE, such as "
+         "a goal, fault, clock or complication of an exercise, or its strands: EXERCISE.ID.PARAMETER=VALUE, such as "
          "3.clip.max_grade=1, or EXERCISE.ID=off; may be given again (rules.json has all of them)")
       ->take_all()
       ->check(refusal_of<RuleChange>(read_rule_change));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/model/formats/dicom_mark.h"
 #include "core/model/formats/file_bytes.h"
 
 namespace insula::case_builder {
@@ -95,7 +96,7 @@ class Walk {
 
 void check_dicom(const std::filesystem::path& file) {
   const std::string bytes = read_file_bytes(file);
-  if (bytes.size() >= 132 && std::string_view(bytes).substr(128, 4) == "DICM") Walk(file, bytes).file();
+  if (is_dicom_file(bytes)) Walk(file, bytes).file();
 }
 
 }  // namespace insula::case_builder

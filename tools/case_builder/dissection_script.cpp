@@ -35,11 +35,17 @@ bool leave_out(SceneFacts& f, const std::string& text, std::vector<Note>& notes)
   for (std::size_t i = 0; i < f.strand_sets.size(); ++i) {
     // Only messages with the line of a strand element concern its set of strands.
     std::string before = exercise(f, 2);
-    before.resize(before.find("id=\"to_" + f.strand_sets[i]));
+    const std::size_t at = before.find("id=\"to_" + f.strand_sets[i]);
+    if (at == std::string::npos) continue;  // its author has left it out
+    before.resize(at);
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     if (text.find(fmt::format("2_aneurysm_dissection.xml:{}:", line)) == std::string::npos) continue;
     notes.push_back(problem("no_place_for_strands", "There is no place for strands to the " + f.strand_sets[i] + ".",
                             "They were left out; give another ball or max_length in 2_aneurysm_dissection.xml."));
+    const std::string gone = "to_" + f.strand_sets[i];
+    std::erase_if(f.rules, [&](const RuleChange& c) {
+      return c.exercise == 2 && (c.rule == gone || c.rule == "membrane_" + gone);
+    });
     f.strand_sets.erase(f.strand_sets.begin() + std::ptrdiff_t(i));
     return true;
   }
@@ -135,7 +141,7 @@ void spin_strands(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::v
   const fs::path motion = folder.path / "2_aneurysm_dissection_steady.csv";
   std::error_code ignored;
   fs::remove(motion, ignored);
-  f.strand_sets = {f.approach.lobes[0], f.approach.lobes[1], "branches"};
+  f.strand_sets = all_strand_sets(f.approach);
   f.rehearsed = false;
   const LoadedExercise exercise = StrandChoice(f, folder, registry, notes).choose();
   if (!rehearse) return;

@@ -12,9 +12,16 @@
 namespace insula::case_builder {
 namespace {
 
-Json overlaps(const std::vector<Room>& rooms, double Room::*which) {
-  Json out = Json::object();
-  for (const Room& r : rooms) out[r.what] = rounded(std::max(0.0, -(r.*which)));
+/// which: the room that counts, before or after the lobes are parted.
+Json told(const Placement& p, const std::vector<Room>& rooms, double Room::*which, const Sight& sight) {
+  Json out = {{"pose", motion_of(p)}, {"parted", false}};
+  for (const char* name : {"rooms", "overlap_mm", "hidden_pct"}) out[name] = Json::object();
+  for (const Room& r : rooms) {
+    out["rooms"][r.what] = rounded(r.before);
+    out["overlap_mm"][r.what] = rounded(std::max(0.0, -(r.*which)));
+  }
+  out["seen_pct"] = rounded(100 * sight.seen);
+  for (const auto& [what, share] : sight.hidden) out["hidden_pct"][what] = rounded(100 * share);
   return out;
 }
 
@@ -31,8 +38,8 @@ PoseView::PoseView(const CaseFolder& folder, const fs::path& project, const Opti
   solids_.emplace_back(fissure_.floor);
 }
 
-std::vector<Room> PoseView::rooms(const Placement& p) const {
-  const Solid wall(placed(vessel_, p).wall.mesh);
+std::vector<Room> PoseView::rooms_of(const artery::Vessel& there) const {
+  const Solid wall(there.wall.mesh);
   std::vector<Room> out;
   for (std::size_t k = 0; k < solids_.size(); ++k) {
     const double room = room_beside(solids_[k], wall);
@@ -43,26 +50,26 @@ std::vector<Room> PoseView::rooms(const Placement& p) const {
 }
 
 Json PoseView::look(const Placement& p) const {
-  const std::vector<Room> all = rooms(p);
-  const Sight sight = sight_of_neck(placed(vessel_, p), fissure_);
-  Json out = {{"pose", motion_of(p)}, {"parted", false}, {"rooms", Json::object()}};
-  for (const Room& r : all) out["rooms"][r.what] = rounded(r.before);
-  out["overlap_mm"] = overlaps(all, &Room::before);
-  out["seen_pct"] = rounded(100 * sight.seen);
-  out["hidden_pct"] = Json::object();
-  for (const auto& [what, share] : sight.hidden) out["hidden_pct"][what] = rounded(100 * share);
-  return out;
+  const artery::Vessel there = placed(vessel_, p);
+  return told(p, rooms_of(there), &Room::before, sight_of_neck(there, fissure_));
 }
 
-Json PoseView::look_parted(const Placement& p) const {
-  Json out = look(p);
+Json PoseView::look_parted(const Placement& p, const fs::path& folder) const {
+  const artery::Vessel there = placed(vessel_, p);
   Fissure parted = fissure_;
   std::vector<Note> notes;
   Progress quiet;
-  const std::vector<Room> all = part_lobes(parted, placed(vessel_, p).wall.mesh, gap_, notes, quiet);
+  const std::vector<Room> all = part_lobes(parted, there.wall.mesh, gap_, notes, quiet);
+  Json out = told(p, all, &Room::after, sight_of_neck(there, parted));
   out["parted"] = true;
   out["sound"] = is_sound(all);
-  out["overlap_mm"] = overlaps(all, &Room::after);
+  out["surfaces"] = Json::array();
+  const auto write = [&](const std::string& name, const TriMesh& mesh) {
+    write_ply(folder / ("parted_" + name + ".ply"), mesh, "unit mm");
+    out["surfaces"].push_back(name);
+  };
+  for (const Lobe& lobe : parted.lobes) write(lobe.name, lobe.surface);
+  write(parted.approach.floor, parted.floor);
   return out;
 }
 
@@ -101,7 +108,7 @@ void answer_poses(const PoseView& view, const fs::path& surfaces, std::istream& 
     }
     RigidMotion motion;
     std::copy(numbers->begin(), numbers->end(), motion.begin());
-    tell(part ? view.look_parted(placement_of(motion)) : view.look(placement_of(motion)));
+    tell(part ? view.look_parted(placement_of(motion), surfaces) : view.look(placement_of(motion)));
   }
 }
 

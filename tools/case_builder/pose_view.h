@@ -18,17 +18,20 @@ class PoseView {
   PoseView(const CaseFolder& folder, const fs::path& project, const Options& options);
 
   /// Of the lobes and the floor, before anything is parted: the numbers "before_mm" of place.json.
-  std::vector<Room> rooms(const Placement& placement) const;
-  /// {pose, rooms: {NAME: mm}, overlap_mm: {NAME: mm}, seen_pct, hidden_pct: {NAME: %}}
+  std::vector<Room> rooms(const Placement& placement) const { return rooms_of(placed(vessel_, placement)); }
+  /// {pose, parted: false, rooms: {NAME: mm}, overlap_mm: {NAME: mm}, seen_pct, hidden_pct: {NAME: %}}
   Json look(const Placement& placement) const;
-  /// With the lobes parted, as the stage place would part them: overlap_mm is then that of report.json, and parted is
-  /// true. Takes seconds.
-  Json look_parted(const Placement& placement) const;
+  /// With the lobes parted, as the stage place would part them: overlap_mm is then that of report.json, and the neck is
+  /// seen between the parted lobes. parted is true, and sound says whether no lobe is crushed. Lobes and floor as they
+  /// then are go to `folder` as parted_NAME.ply, and surfaces has their names. Takes seconds.
+  Json look_parted(const Placement& placement, const fs::path& folder) const;
   /// Surfaces for a picture, NAME.ply: "vessel" in its own frame, the others in that of the approach.
   /// {surfaces: [NAME], pose of the built case, neck: point in the vessel's frame, eye}
   Json write_surfaces(const fs::path& folder) const;
 
  private:
+  std::vector<Room> rooms_of(const artery::Vessel& there) const;
+
   artery::Vessel vessel_;
   Fissure fissure_;
   std::vector<Solid> solids_;  ///< of the lobes, then the floor

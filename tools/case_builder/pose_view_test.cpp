@@ -107,7 +107,7 @@ TEST_F(PlacedTube, IsMovedWhereThePoseSaysWithTheNumbersOfTheView) {
   moved.shift -= read_approach(project_, o.approach).to_surgeon;
   o.pose = motion_of(moved);
   const std::vector<Room> there = view.rooms(moved);
-  const Json parted = view.look_parted(moved), again = place(o);
+  const Json parted = view.look_parted(moved, folder_.path()), again = place(o);
   const Placement taken = placement_from(again);
   EXPECT_LT((taken.shift - moved.shift).norm(), 1e-3);
   EXPECT_LT((taken.rotation - moved.rotation).norm(), 1e-3);
@@ -116,6 +116,17 @@ TEST_F(PlacedTube, IsMovedWhereThePoseSaysWithTheNumbersOfTheView) {
   for (const Json& r : again.at("rooms"))
     EXPECT_NEAR(parted.at("overlap_mm").at(r.at("what").get<std::string>()).get<double>(),
                 std::max(0.0, -r.at("after_mm").get<double>()), 1e-4);
+  // The surfaces of a picture, and the line of sight, are those of the parted lobes.
+  EXPECT_EQ(parted.at("surfaces"), (Json{"frontal", "temporal", "insula"}));
+  Fissure there_parted = read_fissure(project_, made_.lobes(), read_approach(project_, o.approach));
+  const Sight sight = sight_of_neck(read_wall(made_.artery()), there_parted);
+  EXPECT_NEAR(parted.at("seen_pct").get<double>(), 100 * sight.seen, 3);
+  for (const Lobe& lobe : there_parted.lobes) {
+    const TriMesh shown = read_ply(folder_.path() / ("parted_" + lobe.name + ".ply"));
+    ASSERT_EQ(shown.vertices.size(), lobe.surface.vertices.size());
+    for (std::size_t k = 0; k < shown.vertices.size(); ++k)
+      EXPECT_LT((shown.vertices[k] - lobe.surface.vertices[k]).norm(), 1e-3) << lobe.name;
+  }
   const artery::Vessel v = read_wall(made_.artery());
   EXPECT_LT((v.neck->centre - moved.apply(read_wall(made_.wall()).neck->centre)).norm(), 0.02);
 }

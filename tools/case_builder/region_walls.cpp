@@ -7,6 +7,7 @@
 
 #include "core/base/diagnostic.h"
 #include "core/base/input_error.h"
+#include "tools/case_builder/assignment.h"
 #include "tools/case_builder/declarations.h"
 
 namespace insula::case_builder {
@@ -80,10 +81,10 @@ double wall_value(const std::string& name, const std::string& value, const std::
 }
 
 WallChange read_wall_change(const std::string& text) {
-  const std::size_t dot = text.find('.'), equals = text.find('=');
-  if (dot == std::string::npos || equals == std::string::npos || dot == 0 || dot > equals)
-    refuse(text, "write REGION.PARAMETER=VALUE, such as neck.young=7 MPa");
-  WallChange c{text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), text.substr(equals + 1)};
+  const auto given = read_assignment(text);
+  const std::size_t dot = given ? given->name.find('.') : std::string::npos;
+  if (dot == std::string::npos || dot == 0) refuse(text, "write REGION.PARAMETER=VALUE, such as neck.young=7 MPa");
+  WallChange c{given->name.substr(0, dot), given->name.substr(dot + 1), given->value};
   if (c.parameter != "thickness" && c.parameter != "young")
     refuse(text, "a wall has no \"" + c.parameter + "\"; it has thickness and young");
   WallOf checked{};

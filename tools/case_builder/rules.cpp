@@ -8,6 +8,7 @@
 #include "core/scene/expand.h"
 #include "core/xml/document.h"
 #include "engine/reports/svg_plot.h"
+#include "tools/case_builder/assignment.h"
 #include "tools/case_builder/declarations.h"
 
 namespace insula::case_builder {
@@ -64,14 +65,18 @@ bool write_out_part(std::string& text, const std::string& id, const fs::path& fo
   return false;
 }
 
-bool is_rule(const ComponentInfo* info) {
-  return info && (info->kind == Kind::exercise_rule || info->kind == Kind::complication);
+bool is_rule(const ComponentInfo& info) { return info.kind == Kind::exercise_rule || info.kind == Kind::complication; }
+
+/// Fibres, and the membranes between them.
+bool is_of_strands(const ComponentInfo& info) {
+  return info.element == "strand_springs" || info.element == "arachnoid_membrane";
 }
 
 /// Throws unless the element declares the parameter and allows the value.
 void check(const RuleChange& c, const std::string& element) {
   const ComponentInfo* info = builtin_registry().find(element);
-  if (!is_rule(info)) refuse(c, "<" + element + "> is no goal, fault, clock or complication");
+  if (!info || (!is_rule(*info) && !is_of_strands(*info)))
+    refuse(c, "<" + element + "> is no goal, fault, clock or complication, and no strands");
   if (c.off) return;
   const auto rule = info->create();
   ParamBase* parameter = rule->find_param(c.parameter);
@@ -84,16 +89,25 @@ void check(const RuleChange& c, const std::string& element) {
   if (const std::string why = parameter->assign(c.value, {}); !why.empty()) refuse(c, why);
 }
 
+void erase(std::string& text, const Tag& tag) {
+  const std::size_t line = text.rfind('\n', tag.begin) + 1;
+  text.erase(line, tag.end + 1 - line);
+}
+
+/// With the membranes between strands. What else names it cannot do without.
+void leave_out(std::string& text, const RuleChange& c, const Tag& tag) {
+  erase(text, tag);
+  for (std::size_t at; (at = text.find(" strands=\"" + c.rule + "\"")) != std::string::npos;)
+    erase(text, {text.rfind('<', at), text.find('>', at) + 1});
+  if (text.find("\"" + c.rule + ".") != std::string::npos) refuse(c, "another part of the exercise needs it");
+}
+
 void change(std::string& text, const RuleChange& c, const fs::path& folder) {
   Tag tag = tag_of(text, c.rule);
   if (tag.begin == std::string::npos && write_out_part(text, c.rule, folder)) tag = tag_of(text, c.rule);
   if (tag.begin == std::string::npos) refuse(c, "the exercise has no rule of that id");
   check(c, text.substr(tag.begin + 1, text.find_first_of(" \n", tag.begin) - tag.begin - 1));
-  if (c.off) {
-    const std::size_t line = text.rfind('\n', tag.begin) + 1;
-    text.erase(line, tag.end + 1 - line);
-    return;
-  }
+  if (c.off) return leave_out(text, c, tag);
   const std::string value = escaped(c.value), name = " " + c.parameter + "=\"";
   const std::size_t at = text.find(name, tag.begin);
   if (at < tag.end) {
@@ -104,11 +118,14 @@ void change(std::string& text, const RuleChange& c, const fs::path& folder) {
   }
 }
 
-void gather(const Element& parent, Json& out) {
+using Wanted = bool (*)(const ComponentInfo&);
+
+void gather(const Element& parent, Wanted wanted, Json& out) {
   for (const auto& e : parent.children) {
-    gather(*e, out);
+    gather(*e, wanted, out);
     const Attribute* id = e->find("id");
-    if (!id || !is_rule(builtin_registry().find(e->name))) continue;
+    const ComponentInfo* info = builtin_registry().find(e->name);
+    if (!id || !info || !wanted(*info)) continue;
     Json values = Json::object();
     for (const Attribute& a : e->attributes)
       if (a.name != "id") values[a.name] = a.value;
@@ -125,18 +142,20 @@ std::string RuleChange::text() const {
 }
 
 RuleChange read_rule_change(const std::string& text) {
-  const std::size_t sign = text.find('='), first = text.find('.'), last = text.rfind('.', sign);
   RuleChange out;
   const auto name = [](const std::string& s) {
     return !s.empty() && std::all_of(s.begin(), s.end(), [](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
     });
   };
-  if (sign != std::string::npos && first == 1 && text[0] >= '1' && text[0] <= '4' && sign < 200) {
-    out.exercise = text[0] - '0', out.value = text.substr(sign + 1);
+  const auto given = read_assignment(text);
+  const std::string at = given ? given->name : "";
+  const std::size_t first = at.find('.'), last = at.rfind('.');
+  if (first == 1 && at[0] >= '1' && at[0] <= '4' && at.size() < 200) {
+    out.exercise = at[0] - '0', out.value = given->value;
     out.off = last == first && out.value == "off";
-    out.rule = text.substr(2, (last == first ? sign : last) - 2);
-    if (last != first) out.parameter = text.substr(last + 1, sign - last - 1);
+    out.rule = last == first ? at.substr(2) : at.substr(2, last - 2);
+    if (last != first) out.parameter = at.substr(last + 1);
     if (name(out.rule) && (out.off || name(out.parameter))) return out;
   }
   throw InputError("\"" + text +
@@ -159,12 +178,18 @@ std::string with_rules(std::string exercise, int number, const std::vector<RuleC
   return exercise;
 }
 
-Json rules_of(const std::string& exercise, const fs::path& file) {
+namespace {
+Json listed(const std::string& exercise, const fs::path& file, Wanted wanted) {
   Diagnostics none;
   const ExpandedScene scene = expand_scene(exercise, file, none);
   Json out = Json::array();
-  if (scene.root) gather(*scene.root, out);
+  if (scene.root) gather(*scene.root, wanted, out);
   return out;
 }
+}  // namespace
+
+Json rules_of(const std::string& exercise, const fs::path& file) { return listed(exercise, file, is_rule); }
+
+Json strands_of(const std::string& exercise, const fs::path& file) { return listed(exercise, file, is_of_strands); }
 
 }  // namespace insula::case_builder

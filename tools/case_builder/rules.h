@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an author changes in the exercises of a case: goals, faults, clocks and complications. A change names the
-// exercise, the id of its rule and a parameter of it, as the rule declares it; or that the rule is left out.
+// What an author changes in the exercises of a case: goals, faults, clocks and complications, and the strands. A change
+// names the exercise, the id of its rule and a parameter of it, as the rule declares it; or that the rule is left out.
 #pragma once
 #include <string>
 #include <vector>
@@ -31,5 +31,7 @@ std::string with_rules(std::string exercise, int number, const std::vector<RuleC
 /// Goals, faults, clocks and complications of an exercise, those of its parts too:
 /// [{"id", "element", "text", "values": {parameter: text}}]. Those without an id cannot be changed and are left out.
 Json rules_of(const std::string& exercise, const fs::path& file);
+/// The same of its strands and of the membranes between them.
+Json strands_of(const std::string& exercise, const fs::path& file);
 
 }  // namespace insula::case_builder

@@ -87,6 +87,47 @@ TEST_F(Rules, ThatTheirDeclarationsDoNotAllowAreRefused) {
     EXPECT_THROW(read_rule_change(none), InputError) << none;
 }
 
+constexpr const char* tied = R"(<scene title="a">
+  <strand_springs id="to_frontal" from="artery_wall" to="frontal_surface" density="24 1/cm2" max_length="5 mm"
+    stiffness="40 N/m"/>
+  <arachnoid_membrane id="membrane_to_frontal" strands="to_frontal" stiffness="8 N/m"/>
+  <strand_springs id="to_branches" from="artery_wall" to="artery_wall" density="40 1/cm2"/>
+  <exercise id="e"><goal_two_hands id="together" remaining="to_branches.standing"/></exercise>
+</scene>
+)";
+
+TEST_F(Rules, StrandsAreChangedAndLeftOut) {
+  const auto changed = [&](const std::vector<std::string>& changes) {
+    Options o;
+    o.rules = changes;
+    return with_rules(tied, 2, rule_changes(o), folder_.path());
+  };
+  EXPECT_EQ(changed({"2.to_frontal.density=60 1/cm2", "2.to_frontal.stiffness=0.1 N/mm"}),
+            replaced(replaced(tied, "24 1/cm2", "60 1/cm2"), "40 N/m", "0.1 N/mm"));
+  EXPECT_EQ(changed({"2.membrane_to_frontal.stiffness=2 N/m"}), replaced(tied, "8 N/m", "2 N/m"));
+  const std::string without = changed({"2.to_frontal=off"});
+  EXPECT_EQ(without.find("to_frontal"), std::string::npos) << "its membrane goes with it: " << without;
+  EXPECT_NE(without.find("to_branches"), std::string::npos);
+  const auto refusal = [&](const std::string& change) -> std::string {
+    try {
+      changed({change});
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return {};
+  };
+  EXPECT_NE(refusal("2.to_branches=off").find("another part of the exercise needs it"), std::string::npos);
+  EXPECT_NE(refusal("2.to_frontal.density=24").find("unit"), std::string::npos) << refusal("2.to_frontal.density=24");
+  EXPECT_NE(refusal("2.to_frontal.stiffness=-1 N/m").find("range"), std::string::npos);
+
+  folder_.write("a.xml", tied);
+  const Json all = strands_of(tied, folder_.path() / "a.xml");
+  ASSERT_EQ(all.size(), 3u) << all.dump(1);
+  EXPECT_EQ(all[0]["id"], "to_frontal");
+  EXPECT_EQ(all[0]["values"]["density"], "24 1/cm2");
+  EXPECT_EQ(all[1]["element"], "arachnoid_membrane");
+}
+
 TEST_F(Rules, AreListedWithThoseOfParts) {
   folder_.write("a.xml", scene);
   const Json all = rules_of(scene, folder_.path() / "a.xml");

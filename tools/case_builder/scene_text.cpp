@@ -200,6 +200,8 @@ std::string membrane(const std::string& id, const std::string& strands) {
 }
 }  // namespace
 
+std::vector<std::string> all_strand_sets(const Approach& a) { return {a.lobes[0], a.lobes[1], "branches"}; }
+
 std::string strands(const SceneFacts& f, const std::string& kind) {
   const Vec3 &to_surgeon = f.approach.to_surgeon, shift = f.strand_shift * to_surgeon,
              ball = 0.4 * f.neck + 0.6 * f.dome + 1.5 * to_surgeon + shift;

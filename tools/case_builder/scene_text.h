@@ -36,6 +36,8 @@ struct SceneFacts {
 
 std::string artery_part(const SceneFacts& facts);
 std::string field_part(const SceneFacts& facts);
+/// Kinds of strands about the aneurysm: to each lobe, and between branches and sac.
+std::vector<std::string> all_strand_sets(const Approach& approach);
 /// Strands of one kind about the aneurysm: to a lobe, or "branches".
 std::string strands(const SceneFacts& facts, const std::string& kind);
 std::string exercise(const SceneFacts& facts, int number);

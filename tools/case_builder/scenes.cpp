@@ -51,6 +51,7 @@ SceneFacts facts_of(const CaseFolder& folder, const artery::Vessel& v, const Opt
   f.neck = v.neck->centre, f.dome = v.centrelines.back().curve.points.back();
   f.dome_reach = std::max(v.dome_height, v.neck->diameter);
   f.bleb = v.bleb.has_value();
+  f.strand_sets = all_strand_sets(approach);
   return f;
 }
 
@@ -83,8 +84,11 @@ void write_rules(const SceneFacts& f, const CaseFolder& folder) {
   for (int k = folder.opening.empty() ? 2 : 1; k <= 4; ++k) {
     exercise(f, k);
     const fs::path file = exercise_file(folder, k);
-    all.push_back(
-        {{"exercise", k}, {"file", file.filename().string()}, {"rules", rules_of(proposed_exercise(f, k), file)}});
+    const std::string proposed = proposed_exercise(f, k);
+    all.push_back({{"exercise", k},
+                   {"file", file.filename().string()},
+                   {"rules", rules_of(proposed, file)},
+                   {"strands", strands_of(proposed, file)}});
   }
   write_json(folder.path / "rules.json", all);
 }
@@ -136,6 +140,7 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   const ApplierPose held = plan_temporary(v, floor, *temporary, approach);
 
   spin_strands(f, folder, o.rehearse, notes, progress);
+  write_rules(f, folder);  // with the strands that there are
   if (!o.brain.empty()) try_opening(f, folder, o.rehearse, notes, progress);
   script_rupture(folder, v, plan, held, f, o.rehearse, notes, progress);
   progress.step("writing");

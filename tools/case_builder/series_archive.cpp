@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/base/input_error.h"
+#include "core/model/formats/dicom_mark.h"
 #include "engine/sharing/zip_reader.h"
 
 namespace insula::case_builder {
@@ -19,10 +20,8 @@ constexpr std::uint64_t most_image_bytes = 1'000'000'000;  // one file may hold 
 constexpr std::uint64_t most_bytes = 2'000'000'000;
 constexpr std::string_view list_of_files = "1.2.840.10008.1.3.10";  // the class of a DICOMDIR (PS3.4)
 
-/// "DICM" stands after a preamble of 128 bytes (PS3.10, chapter 7.1).
 bool is_image(std::string_view bytes) {
-  return bytes.size() > 132 && bytes.substr(128, 4) == "DICM" &&
-         bytes.substr(0, 1024).find(list_of_files) == std::string_view::npos;
+  return is_dicom_file(bytes) && bytes.substr(0, 1024).find(list_of_files) == std::string_view::npos;
 }
 
 fs::path new_folder(const fs::path& near) {

@@ -18,7 +18,7 @@ struct Sight {
 
 /// The near side is the half of the neck's line (neck_frame.h) that faces the eye from which the clipping is seen.
 /// Each of its points is joined with the eye by a straight line. What may hide it: lobes, floor and bone of the fissure
-/// before they are parted, the retractors, and the vessel itself, here "vessel". Throws InputError without a neck.
+/// as it is given, the retractors, and the vessel itself, here "vessel". Throws InputError without a neck.
 Sight sight_of_neck(const artery::Vessel& placed, const Fissure& fissure);
 
 /// Where the line from a point to another one first meets a surface, as a share of its length; 2: nowhere.

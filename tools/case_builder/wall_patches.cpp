@@ -9,6 +9,7 @@
 #include "core/base/input_error.h"
 #include "core/base/text.h"
 #include "core/model/geometry/triangle_distance.h"
+#include "tools/case_builder/assignment.h"
 #include "tools/case_builder/region_walls.h"
 #include "tools/case_builder/unit_options.h"
 
@@ -21,9 +22,8 @@ constexpr double sure = 0.95;  // of the radius: farther points are off the wall
   throw InputError("--wall-patch " + text + ": " + why);
 }
 
-void take_value(WallPatch& out, const std::string& part, const std::string& text) {
-  const std::size_t equals = part.find('=');
-  const std::string name(trim(part.substr(0, equals))), value(trim(part.substr(equals + 1)));
+void take_value(WallPatch& out, const Assignment& given_value, const std::string& text) {
+  const auto& [name, value] = given_value;
   const std::string given = "--wall-patch " + text + ": " + name;
   if (name == "radius") out.radius_mm = 1e3 * wall_value("spot_radius", value, given);
   else if (name == "thickness" || name == "young") {
@@ -76,8 +76,8 @@ WallPatch read_wall_patch(const std::string& text) {
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find(',', at), text.size());
     const std::string part = text.substr(at, end - at);
-    if (part.find('=') == std::string::npos) take_point(out, part, text);
-    else take_value(out, part, text);
+    if (const auto value = read_assignment(part)) take_value(out, *value, text);
+    else take_point(out, part, text);
     at = end + 1;
   }
   if (out.points.empty()) refuse_patch(text, "it has no point; write \"X Y Z mm, radius=1 mm, young=7 MPa\"");

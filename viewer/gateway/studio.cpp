@@ -26,6 +26,13 @@ std::string state_of(const StudioProject& p, const char* what) {
   return p.work.contains(what) ? text_of(p.work[what], "state") : std::string();
 }
 
+constexpr std::size_t most_uploads = 10'000;
+
+bool is_upload_name(const std::string& name) {
+  return !name.empty() && name.size() <= 64 &&
+         std::all_of(name.begin(), name.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
+}
+
 /// As a word of a shell.
 std::string quoted(const std::string& word) { return word.find(' ') == std::string::npos ? word : "\"" + word + "\""; }
 
@@ -336,6 +343,7 @@ ApiAnswer Studio::post(std::string_view path, const std::string& text) {
   const Json body = Json::parse(text, nullptr, false);
   if (!body.is_object()) return refusal(400, "this is no JSON object");
   if (StudioScenes::answers(path)) return scenes_.post(path, body);
+  if (path == "discard") return discard(text_of(body, "upload"));
   std::optional<StudioProject> p = projects_.read(text_of(body, "name"));
   if (!p) return refusal(404, "there is no such project");
   try {
@@ -349,15 +357,33 @@ ApiAnswer Studio::post(std::string_view path, const std::string& text) {
 
 ApiAnswer Studio::upload(std::string_view query, const fs::path& content) {
   try {
+    const std::string upload = query_value(query, "upload");
+    if (const auto it = uploads_.find(upload); it != uploads_.end()) {
+      uploads_.erase(it);
+      return refusal(409, "cancelled");
+    }
     const UploadKind kind = kind_of_upload(content);
     if (kind.extension.empty()) return refusal(kind.status, kind.refused);
     StudioProject p = projects_.create(query_value(query, "file"), kind.input(), content);
+    if (is_upload_name(upload)) uploads_[upload] = p.name;
     if (kind.scan) p.work["scan"] = Json::object();
     inspect(p);
     return shown(p);
   } catch (const InputError& e) {
     return refusal(507, e.what());
   }
+}
+
+/// The page cannot know whether all of a file had arrived when it was cancelled.
+ApiAnswer Studio::discard(const std::string& upload) {
+  if (!is_upload_name(upload)) return refusal(400, "an upload has a name of letters and digits");
+  if (uploads_.size() >= most_uploads) return refusal(409, "too many uploads: start the studio again");
+  if (const std::string project = uploads_[upload]; !project.empty()) {
+    jobs_.erase(project);  // its program ends with it
+    projects_.remove(project);
+    uploads_.erase(upload);
+  }
+  return {200, "{}\n"};
 }
 
 std::optional<fs::path> Studio::file(std::string_view path, std::string_view query) const {

@@ -45,9 +45,11 @@ class Studio {
   ApiAnswer get(std::string_view path, std::string_view query);
   ///   choose {name, choices}; undo, redo, build, try, cancel, remove, again {name}; play {name, exercise}: the
   ///   project, as above. again: the file is read once more. edit {name}: a copy of the built scenes. What begins with
-  ///   "scene" is answered by StudioScenes.
+  ///   "scene" is answered by StudioScenes. discard {upload}: a cancelled upload becomes no project, whether all of it
+  ///   has arrived or will arrive.
   ApiAnswer post(std::string_view path, const std::string& body);
-  /// file=: name of the author's file. The new project. The content is moved to it.
+  /// file=: name of the author's file; upload=: what the page calls this upload, for discard. The new project. The
+  /// content is moved to it.
   ApiAnswer upload(std::string_view query, const std::filesystem::path& content);
   /// surface, scan, side, front, fissure and report of the project name=; pose_surface of it with part=.
   std::optional<std::filesystem::path> file(std::string_view path, std::string_view query) const;
@@ -70,6 +72,7 @@ class Studio {
   void ended(const std::string& name, const StudioJob& job);
   void added(const std::string& name, const StudioJob& job);
   ApiAnswer pose(const StudioProject& project, std::string_view query);
+  ApiAnswer discard(const std::string& upload);
   ApiAnswer try_clip(StudioProject& project);
   void trial_ended(StudioProject& project, const StudioJob& job);
   /// What was found, and whether it is that of the present choices.
@@ -82,6 +85,7 @@ class Studio {
   StudioProjects projects_;
   std::map<std::string, std::unique_ptr<StudioJob>> jobs_;          ///< by project: one each
   std::map<std::string, std::string> wanted_exercise_, add_error_;  ///< by project
+  std::map<std::string, std::string> uploads_;  ///< their projects; empty: it is to be discarded when it comes
   StudioPlayer player_;
   StudioPoses poses_;
   StudioScenes scenes_;

@@ -190,6 +190,26 @@ TEST_F(StudioTest, AWrongFileMakesNoProject) {
   EXPECT_EQ(json::parse(studio_->get("projects", "").json)["projects"], json::array());
 }
 
+TEST_F(StudioTest, ACancelledUploadLeavesNoProjectWhetherItArrivesBeforeOrAfter) {
+  const auto projects = [&] { return json::parse(studio_->get("projects", "").json)["projects"].size(); };
+  const auto discard = [&](const std::string& upload) {
+    return studio_->post("discard", json{{"upload", upload}}.dump()).status;
+  };
+  upload("first.off&upload=a1");
+  upload("second.off&upload=b2");
+  ASSERT_EQ(projects(), 2u);
+  EXPECT_EQ(discard("a1"), 200);
+  ASSERT_EQ(projects(), 1u) << "its bytes had all arrived";
+  EXPECT_EQ(project("second")["name"], "second");
+  EXPECT_FALSE(fs::exists(folder_.path() / "data/studio/first"));
+  EXPECT_EQ(discard("c3"), 200);
+  EXPECT_EQ(sent("third.off&upload=c3", off_file).status, 409) << "its bytes arrive later";
+  EXPECT_EQ(sent("fourth.off&upload=d4", off_file).status, 200);
+  EXPECT_EQ(projects(), 2u);
+  EXPECT_EQ(discard("../second"), 400);
+  EXPECT_EQ(wait("second", "inspect")["inspect"]["state"], "done");
+}
+
 TEST_F(StudioTest, UnknownProjectsAndPathsAreRefused) {
   upload();
   for (const std::string name : {"other", "", "..", "../studio/vessel", "vessel/../vessel"}) {

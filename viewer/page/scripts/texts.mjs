@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The texts that catalogues translate: those of the page's sources and those of the shipped exercises.
+// The texts that catalogues translate: those of the page's sources, those of the shipped exercises, and those messages
+// of the case builder that builder_texts.json lists.
 //   node scripts/texts.mjs                   how many there are, and how many each language lacks
 //   node scripts/texts.mjs --missing LANG    those without a translation, as JSON to be filled in
 //   node scripts/texts.mjs --stale LANG      translations of texts that are no more
@@ -37,6 +38,16 @@ function exerciseKey(english) {
 /** Text and kind of each, in order. */
 export const exerciseTexts = () => JSON.parse(readFileSync(kept, 'utf8'));
 
+/** Messages of the case builder, as its page shows them in English. */
+export const builderTexts = () => JSON.parse(readFileSync(join(here, 'builder_texts.json'), 'utf8'));
+
+/** Its sources, with texts that go on over several lines in one piece. */
+export function builderSources() {
+  const of = join(project, 'tools/case_builder');
+  const files = readdirSync(of).filter((f) => f.endsWith('.cpp') && !f.endsWith('_test.cpp'));
+  return files.map((f) => readFileSync(join(of, f), 'utf8').replace(/"\s*\n\s*"/g, '')).join('\n');
+}
+
 let known;
 
 /** All keys: {key, where}. Throws for a text() whose message is no literal. The sources are read once. */
@@ -46,7 +57,7 @@ export function allTexts() {
 
 function readTexts() {
   const found = new Map(pageTexts().map((t) => [t.key, t.where]));
-  for (const { key, kind } of exerciseTexts()) if (!found.has(key)) found.set(key, kind);
+  for (const { key, kind } of [...exerciseTexts(), ...builderTexts()]) if (!found.has(key)) found.set(key, kind);
   return [...found].map(([key, where]) => ({ key, where }));
 }
 

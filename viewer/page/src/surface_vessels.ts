@@ -31,6 +31,8 @@ const styles: Record<string, VesselStyle> = {
 export const vesselStyleOf = (material: string): VesselStyle => styles[material] ?? styles.cortex!;
 
 const stepM = 0.0006;
+/** A lobe has some hundred. A body of many metres, whose unit is wrong, would have millions. */
+const mostTrees = 600;
 /** Of a trunk that is drawn as thick as any, m. */
 const thickestM = 0.0006;
 
@@ -189,7 +191,7 @@ function seedsOf(tissue: Tissue, shading: Shading, density: number, random: () =
   const p = tissue.positions;
   let area = 0;
   for (let i = 0; i < tissue.indices.length; i += 3) area += triangleArea(p, tissue.indices, i);
-  const trees = Math.round(area * density);
+  const trees = Math.min(mostTrees, Math.round(area * density));
   const seeds: number[] = [];
   const spacing = 0.7 * Math.sqrt(1 / density);
   for (let tries = 0; tries < trees * 60 && seeds.length < trees; tries++) {

@@ -69,6 +69,7 @@ try {
   const studio = programs.start('insula', ['studio', '--no-browser', '--port', '0', '--data', data], bus);
   const { address } = await programs.told(studio, /studio is at (\S+)/);
   const page = await browser.newPage({ viewport });
+  page.setDefaultTimeout(patience.timeout);
   await page.goto(address);
   await page.getByText('There are no projects yet.').waitFor(patience);
 

@@ -23,6 +23,16 @@ const onDisk = (file) => readFileSync(file, 'utf8');
 const item = (page, name, of) => page.getByRole('treeitem').filter({ hasText: `${name}${of}` });
 const saved = (page) => page.getByText('Saved', { exact: true }).waitFor(patience);
 
+const picture = (page) => page.frames().find((f) => f !== page.mainFrame() && f.url().startsWith('http'));
+
+/** Starts the running picture. */
+async function lookAtIt(page) {
+  await page.getByRole('button', { name: 'Look at it' }).click();
+  await page.locator('.live iframe').waitFor(patience);
+  await waitFor('picture', () => picture(page));
+  await picture(page).waitForFunction(() => window.__insula?.ready, null, patience);
+}
+
 /** Adds an element to the chosen one. */
 async function add(page, element) {
   await page.getByLabel('Element to be added').selectOption(element);
@@ -57,9 +67,28 @@ async function beginFromNothing(page) {
   }
   await saved(page);
   await waitFor('saved scene', () => /<corotational_fem/.test(onDisk(file)));
+  check('a block of tissue is put together from its components and saved by its name');
+  await lookAtIt(page);
+  const seen = picture(page);
+  await shot(page, 'new_live');
+  const bodies = () => seen.evaluate(() => [window.__insula.session, window.__insula.problems.join()]);
+  const [session, problems] = await bodies();
+  assert.equal(problems, '');
+  // A unit by mistake: forty metres of tissue are shown too.
+  await body();
+  await page.getByLabel('mesh_unit (required)', { exact: true }).selectOption('m');
+  await waitFor('another unit', () => /mesh_unit="m"/.test(onDisk(file)));
+  await seen.waitForFunction(
+    (before) => window.__insula?.ready && window.__insula.session !== before,
+    session,
+    patience,
+  );
+  await page.keyboard.press('Control+z');
+  await waitFor('the unit before', () => /mesh_unit="mm"/.test(onDisk(file)));
+  await page.getByRole('button', { name: 'Close the picture' }).click();
   await page.getByRole('link', { name: 'All projects' }).click();
   await page.getByRole('link', { name: 'my_block' }).waitFor(patience);
-  check('a block of tissue is put together from its components and saved by its name');
+  check('it is shown while it runs, also with a unit by mistake');
 }
 
 const studio = programs.start('insula', ['studio', '--no-browser', '--port', '0', '--data', data], ownBus());
@@ -67,6 +96,7 @@ const browser = await launch();
 try {
   const { address } = await programs.told(studio, /studio is at (\S+)/);
   const page = await browser.newPage({ viewport: { width: 1366, height: 900 } });
+  page.setDefaultTimeout(patience.timeout);
   await page.goto(address);
   const source = page.getByLabel('Scene to be copied');
   await source
@@ -170,12 +200,8 @@ try {
   assert.equal(onDisk(part), partBefore);
   check('what was typed just before another file was opened is kept');
 
-  await page.getByRole('button', { name: 'Look at it' }).click();
-  await page.locator('.live iframe').waitFor(patience);
-  const picture = () => page.frames().find((f) => f !== page.mainFrame() && f.url().startsWith('http'));
-  await waitFor('picture', picture);
-  const seen = picture();
-  await seen.waitForFunction(() => window.__insula?.ready, null, patience);
+  await lookAtIt(page);
+  const seen = picture(page);
   await shot(page, 'live');
   const session = () => seen.evaluate(() => window.__insula.session ?? '');
   const first = await session();

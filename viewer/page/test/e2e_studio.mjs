@@ -45,6 +45,22 @@ async function sidesOfNeck(page, { centre, normal, diameter_mm: width }) {
   );
 }
 
+/** The gateway has all of a file, its answer is late, and the author presses Cancel. */
+async function cancelledAtTheEnd(page) {
+  const names = () => page.evaluate(async () => (await (await fetch('api/studio/projects')).json()).projects.length);
+  let arrived = 0;
+  await page.route('**/api/studio/upload?*', async (route) => {
+    const answer = await route.fetch();
+    arrived = await names();
+    await page.getByRole('button', { name: 'Cancel' }).click();
+    await route.fulfill({ response: answer }).catch(() => undefined); // nobody waits for it any more
+  });
+  await dropped(page, 'narrow neck.ply', surface);
+  await page.getByText('Cancelled.').waitFor(patience);
+  await waitFor('no project', async () => arrived === 1 && (await names()) === 0);
+  await page.unroute('**/api/studio/upload?*');
+}
+
 /** The clipping as a trainee begins it, drawn well. */
 async function pictureOfTheField(page) {
   if (!process.env.INSULA_PICTURES) return;
@@ -67,6 +83,7 @@ const browser = await launch();
 try {
   let { address } = await start();
   const page = await browser.newPage({ viewport });
+  page.setDefaultTimeout(patience.timeout);
   await page.goto(address);
   await page.getByText('There are no projects yet.').waitFor(patience);
   assert.deepEqual(await axeFinds(page), []);
@@ -76,6 +93,9 @@ try {
   await dropped(page, 'picture.stl', Buffer.from('\x89PNG\r\n\x1a\n'));
   await page.getByText('this file is no surface').waitFor(patience);
   check('a file that is no surface is refused, whatever its name says');
+
+  await cancelledAtTheEnd(page);
+  check('a file that is cancelled after all of it has arrived leaves no project');
 
   await dropped(page, 'narrow neck.ply', surface);
   await page.getByText('Three methods agree').waitFor(patience);
@@ -162,12 +182,20 @@ try {
   await remnant.press('Tab');
   await page.getByRole('checkbox', { name: 'Fifteen minutes are over' }).uncheck();
   await page.getByText('Choices have changed since: build again.').waitFor(patience);
-  const rules = ['3.clip.max_grade=1', '3.time=off'];
-  const ruled = () => waitFor('changes', async () => (await project(page, 'narrow_neck')).choices.rules.length === 2);
+  await page.getByLabel('Exercise', { exact: true }).selectOption('2');
+  const strands = page.getByRole('group', { name: 'Strands to the frontal lobe' });
+  await strands.getByLabel('How densely they stand').fill('30');
+  await strands.getByLabel('How densely they stand').press('Tab');
+  await waitFor('a density', async () => (await project(page, 'narrow_neck')).choices.rules.length === 3);
+  await strands.getByLabel('Stiffness').fill('80');
+  await strands.getByLabel('Stiffness').press('Tab');
+  const ofStrands = ['2.to_frontal.density=30 1/cm2', '2.to_frontal.stiffness=80 N/m'];
+  const rules = ['3.clip.max_grade=1', '3.time=off', ...ofStrands];
+  const ruled = () => waitFor('changes', async () => (await project(page, 'narrow_neck')).choices.rules.length === 4);
   await ruled();
   assert.deepEqual((await project(page, 'narrow_neck')).choices.rules, rules);
   await page.getByRole('button', { name: 'Undo' }).click();
-  await page.waitForFunction(() => document.querySelectorAll('.rule input[type=checkbox]:not(:checked)').length === 0);
+  await waitFor('the stiffness before', async () => (await strands.getByLabel('Stiffness').inputValue()) !== '80');
   await page.getByRole('button', { name: 'Redo' }).click();
   await ruled();
   assert.deepEqual(await axeFinds(page), []);
@@ -190,6 +218,11 @@ try {
   const text = readFileSync(join(data, 'studio/narrow_neck', built.number, 'narrow_neck/3_clipping.xml'), 'utf8');
   assert.match(text, /max_grade="1"/);
   assert.doesNotMatch(text, /<time_limit/);
+  const tied = readFileSync(
+    join(data, 'studio/narrow_neck', built.number, 'narrow_neck/2_aneurysm_dissection.xml'),
+    'utf8',
+  );
+  assert.match(tied, /id="to_frontal"[^>]*density="30 1\/cm2"[^>]*stiffness="80 N\/m"/);
   const wall = readFileSync(join(data, 'studio/narrow_neck', built.number, 'narrow_neck/artery.xml'), 'utf8');
   assert.match(wall, /regions="neck" thickness="[0-9.]+ mm" young="7 MPa"/);
   assert.match(wall, /id="wall_patch_1" spots="[^"]* mm; [^"]*" spot_radius="1 mm" thickness="0.5 mm" young="8 MPa"/);
@@ -197,7 +230,7 @@ try {
   const shift = JSON.parse(place).shift_mm;
   assert.ok(Math.hypot(...shift.map((x, k) => x - moved[k])) < 0.01, `${shift}: ${moved}`);
   check('the painted part and the place are built');
-  check('a goal, a limit and the stiffness of the neck are changed by forms, and built');
+  check('a goal, a limit, strands and the stiffness of the neck are changed by forms, and built');
 
   await page.locator('.clip select').selectOption('angled_60_6');
   await page.getByLabel('Higher over the neck, mm').fill('-0.5');

@@ -19,6 +19,7 @@ const all = declarationsOf([
       { name: 'radius', required: true, numbers: 1, min: '0.5 mm', max: '1 m', units: metre },
       { name: 'at', required: true, numbers: 3, units: metre },
       { name: 'colour', required: true, choices: ['red', 'blue'] },
+      { name: 'unit', required: true, choices: ['m', 'cm', 'mm'] },
       { name: 'mass', default: '1 kg' },
     ],
   },
@@ -38,8 +39,8 @@ test('a scene may begin with what stands right inside of it, by kind', () => {
 test('components begin with what they must have, and name what is there', () => {
   const begun = withComponents('<scene title="a">\n</scene>\n', kinds('ball', 'ball', 'spring', 'wall'), all);
   expect(begun).toBe(`<scene title="a">
-  <ball id="ball" radius="0.5 mm" at="0 0 0 mm" colour="red"/>
-  <ball id="ball_2" radius="0.5 mm" at="0 0 0 mm" colour="red"/>
+  <ball id="ball" radius="0.5 mm" at="0 0 0 mm" colour="red" unit="mm"/>
+  <ball id="ball_2" radius="0.5 mm" at="0 0 0 mm" colour="red" unit="mm"/>
   <spring on="ball"/>
   <wall mesh=""/>
 </scene>

@@ -5,12 +5,13 @@ import { join } from 'node:path';
 /** Takes pictures of the page as PREFIX_NAME.png, if INSULA_SHOTS names a folder for them. */
 export const shots =
   (prefix, options = { fullPage: true }) =>
-  async (page, name) => {
+  async (page, name, more = {}) => {
     if (!process.env.INSULA_SHOTS) return;
     await page.screenshot({
       path: join(process.env.INSULA_SHOTS, `${prefix}_${name}.png`),
       timeout: 300_000,
       ...options,
+      ...more,
     });
   };
 

@@ -88,6 +88,13 @@ describe('vessels', () => {
     expect(Math.max(...tubes.indices.slice(0, 60000))).toBeLessThan(tubes.kind.length);
   });
 
+  it('are not more than a page can draw on a body whose unit is wrong', () => {
+    const huge = { ...t, positions: t.positions.map((x) => 1000 * x) };
+    const began = performance.now();
+    expect(growVessels(huge, shading, style, 3).length).toBeLessThan(601);
+    expect(performance.now() - began).toBeLessThan(10_000);
+  });
+
   it('are the same for the same seed and differ for another', () => {
     const a = growVessels(t, shading, style, 3);
     const b = growVessels(t, shading, style, 3);

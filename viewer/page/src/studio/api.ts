@@ -239,10 +239,20 @@ export class StudioApi {
   poseSurface = (name: string, part: string, version: string): string =>
     `${this.file(name, 'pose_surface', version)}&part=${part}`;
 
-  /** A new project. share: gets how much of the file has gone, 0 to 1. */
+  /** A new project. share: gets how much of the file has gone, 0 to 1. Cancelled, it leaves no project. */
   async upload(file: File, signal: AbortSignal, share: (done: number) => void): Promise<Project> {
-    const url = new URL(`api/studio/upload?file=${encodeURIComponent(file.name)}`, this.base);
+    const upload = [...crypto.getRandomValues(new Uint32Array(4))].map((n) => n.toString(36)).join('');
+    const url = new URL('api/studio/upload', this.base);
+    url.search = new URLSearchParams({ file: file.name, upload }).toString();
     const lost = () => new Error(message('The connection was lost: send the file again.'));
-    return projectOf(await contentOf(await sent(url, file, signal, share, lost)));
+    try {
+      const project = projectOf(await contentOf(await sent(url, file, signal, share, lost)));
+      signal.throwIfAborted();
+      return project;
+    } catch (e) {
+      // All of it may have arrived before.
+      if (signal.aborted) void this.api.ask('studio/discard', {}, { upload }).catch(() => undefined);
+      throw e;
+    }
   }
 }

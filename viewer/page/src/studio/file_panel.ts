@@ -75,7 +75,9 @@ export class FilePanel {
       ),
       ...f.notes
         .filter((n) => n.kind !== 'fact')
-        .map((n) => el('p', { class: n.kind === 'problem' ? 'bad' : 'mended' }, forThePage(`${n.text} ${n.advice}`))),
+        .map((n) =>
+          el('p', { class: n.kind === 'problem' ? 'bad' : 'mended' }, `${forThePage(n.text)} ${forThePage(n.advice)}`),
+        ),
     ];
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the case builder says for its command line, as what to do on this page. Its messages are English.
+// What the case builder says for its command line, as what to do on this page. Some of its messages are translated.
 import { said } from '../languages/said';
 
 /** Options in messages of tools/case_builder, and what stands for them here. In this order. */
@@ -24,10 +24,12 @@ const here: readonly [RegExp, string][] = [
   ],
 ];
 
-/** A message of the case builder for somebody who has no command line. */
-export function forThePage(words: string): string {
-  return here.reduce((all, [option, action]) => all.replace(option, action), words);
-}
+/**
+ * A message of the case builder for somebody who has no command line, in the reader's language if it is one of
+ * scripts/builder_texts.json.
+ */
+export const forThePage = (words: string): string =>
+  said(here.reduce((all, [option, action]) => all.replace(option, action), words));
 
 /** Why something was refused. */
-export const reason = (e: unknown): string => (e instanceof Error ? forThePage(said(e.message)) : String(e));
+export const reason = (e: unknown): string => (e instanceof Error ? forThePage(e.message) : String(e));

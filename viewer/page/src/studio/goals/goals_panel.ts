@@ -11,7 +11,7 @@ import type { Declarations } from '../scene_editor/declarations';
 import { field, replaceRows, select } from '../fields';
 import { reason } from '../wording';
 import { RuleRow } from './rule_row';
-import { changeOf, type ExerciseRules, withChange } from './rules';
+import { changeOf, type Rule, withChange } from './rules';
 
 export class GoalsPanel {
   readonly root: HTMLElement;
@@ -79,10 +79,14 @@ export class GoalsPanel {
     const now = JSON.stringify([project.name, exercise.file, this.exercise.value, project.choices.rules]);
     if (now === this.shown) return;
     this.shown = now;
-    replaceRows(this.rows, this.rowsOf(exercise, declarations, project.choices.rules));
+    const { rules } = project.choices;
+    const strands = this.rowsOf(exercise.exercise, exercise.strands, declarations, rules);
+    const heading = strands.length > 0 ? [el('h4', {}, text('Strands'))] : [];
+    const goals = this.rowsOf(exercise.exercise, exercise.rules, declarations, rules);
+    replaceRows(this.rows, [...goals, ...heading, ...strands]);
   }
 
-  private rowsOf({ exercise, rules }: ExerciseRules, declarations: Declarations, changes: string[]): HTMLElement[] {
+  private rowsOf(exercise: number, rules: Rule[], declarations: Declarations, changes: string[]): HTMLElement[] {
     return rules.flatMap((rule) => {
       const kind = declarations.get(rule.element);
       if (!kind) return [];

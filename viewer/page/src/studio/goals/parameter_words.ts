@@ -37,9 +37,42 @@ export function parameterWords(element: string, parameter: string): string {
       return text('Not before');
     case 'complication.to':
       return text('Not after');
+    case 'strand_springs.density':
+      return text('How densely they stand');
+    case 'strand_springs.max_length':
+      return text('Longest that arises');
+    case 'strand_springs.stiffness':
+    case 'arachnoid_membrane.stiffness':
+      return text('Stiffness');
+    case 'strand_springs.strength':
+    case 'arachnoid_membrane.strength':
+      return text('Force at which it tears');
+    case 'strand_springs.cut_force':
+      return text('Force of a blade that cuts it');
   }
   if (parameter === 'hold') return text('How long it must hold');
   return parameter === 'grace' ? text('Shorter times are forgiven') : '';
+}
+
+export const isOfStrands = (element: string): boolean =>
+  element === 'strand_springs' || element === 'arachnoid_membrane';
+
+/** What strands tie, by the names that the case builder gives them. */
+export function strandWords(element: string, id: string): string {
+  if (element === 'arachnoid_membrane')
+    return text('Membrane between strands: {id}', { id: id.replace(/^membrane_to_/, '') });
+  switch (id) {
+    case 'arachnoid':
+      return text('Strands between the lips of the fissure');
+    case 'to_frontal':
+      return text('Strands to the frontal lobe');
+    case 'to_temporal':
+      return text('Strands to the temporal lobe');
+    case 'to_branches':
+      return text('Strands between sac and branches');
+    default:
+      return text('Strands: {id}', { id: id.replace(/^to_/, '') });
+  }
 }
 
 /** What happens by chance. */

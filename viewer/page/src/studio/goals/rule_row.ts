@@ -5,7 +5,7 @@ import { said } from '../../languages/said';
 import { toggle } from '../fields';
 import { parameterField } from '../parameter_field';
 import type { ElementKind, Parameter } from '../scene_editor/declarations';
-import { complicationWords, parameterWords } from './parameter_words';
+import { complicationWords, isOfStrands, parameterWords, strandWords } from './parameter_words';
 import type { Rule } from './rules';
 
 export interface Asks {
@@ -15,8 +15,14 @@ export interface Asks {
   choose(parameter: string, value: string | null): void;
 }
 
-/** Whether an author is asked for it: one number, of what a trainee does. */
-const isAsked = (p: Parameter): boolean => p.numbers === 1 && p.reference === '';
+/** Whether an author is asked for it: one number, of what a trainee does; of strands, what a hand feels. */
+const isAsked = (element: string, p: Parameter): boolean =>
+  p.numbers === 1 && p.reference === '' && (!isOfStrands(element) || parameterWords(element, p.name) !== '');
+
+function wordsOf(rule: Rule): string {
+  if (isOfStrands(rule.element)) return strandWords(rule.element, rule.id);
+  return rule.element === 'complication' ? complicationWords(rule.values.get('command') ?? '') : said(rule.text);
+}
 
 export class RuleRow {
   readonly root: HTMLElement;
@@ -27,12 +33,13 @@ export class RuleRow {
     key: string,
     private readonly asks: Asks,
   ) {
-    const words =
-      rule.element === 'complication' ? complicationWords(rule.values.get('command') ?? '') : said(rule.text);
+    const words = wordsOf(rule);
     const counts = toggle(words === '' ? kind.doc : words);
     counts.input.checked = asks.chosen('') !== 'off';
     counts.input.onchange = () => asks.choose('', counts.input.checked ? null : 'off');
-    const fields = kind.parameters.filter(isAsked).map((p) => this.field(p, `${key}-${p.name}`));
+    const fields = kind.parameters
+      .filter((p) => isAsked(rule.element, p))
+      .map((p) => this.field(p, `${key}-${p.name}`));
     for (const field of fields) field.hidden = !counts.input.checked;
     this.root = el('div', { class: 'rule', role: 'group', 'aria-label': words || kind.doc }, counts.root, ...fields);
   }

@@ -16,21 +16,27 @@ export interface ExerciseRules {
   exercise: number;
   file: string;
   rules: Rule[];
+  /** Fibres, and membranes between them. */
+  strands: Rule[];
 }
 
 const valuesOf = (value: unknown): Map<string, string> =>
   new Map(Object.entries(object(value)).map(([name, v]) => [name, text(v)]));
 
+const rulesOf = (value: unknown): Rule[] =>
+  list(value).map((r) => ({
+    id: text(r.id),
+    element: text(r.element),
+    text: text(r.text),
+    values: valuesOf(r.values),
+  }));
+
 export const exerciseRulesOf = (value: unknown): ExerciseRules[] =>
   list(value).map((e) => ({
     exercise: number(e.exercise),
     file: text(e.file),
-    rules: list(e.rules).map((r) => ({
-      id: text(r.id),
-      element: text(r.element),
-      text: text(r.text),
-      values: valuesOf(r.values),
-    })),
+    rules: rulesOf(e.rules),
+    strands: rulesOf(e.strands),
   }));
 
 /** parameter '': whether the rule is left out. */

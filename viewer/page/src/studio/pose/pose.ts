@@ -23,6 +23,10 @@ export interface PoseAnswer {
   overlapMm: [string, number][];
   seenPct: number;
   hiddenPct: [string, number][];
+  /** Of parted lobes: false if one would be crushed. */
+  sound: boolean;
+  /** Those that there are with the lobes parted. */
+  surfaces: string[];
 }
 
 export interface PoseState {
@@ -63,6 +67,8 @@ function answerOf(value: unknown): PoseAnswer | null {
     overlapMm: named(a.overlap_mm),
     seenPct: number(a.seen_pct),
     hiddenPct: named(a.hidden_pct),
+    sound: a.sound !== false,
+    surfaces: Array.isArray(a.surfaces) ? a.surfaces.map(text) : [],
   };
 }
 

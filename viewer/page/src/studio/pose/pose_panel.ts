@@ -30,6 +30,8 @@ function partText(name: string): string {
   }
 }
 
+const howTo = () => text('Drag an arrow, a square or a ring at the neck. Drag beside it to look from elsewhere.');
+
 export class PosePanel {
   readonly root: HTMLElement;
   private readonly open = el('button', { type: 'button', class: 'pose-open' });
@@ -43,6 +45,9 @@ export class PosePanel {
   private project: Project | null = null;
   private begun = '';
   private known: PoseFacts | null = null;
+  private placing = false;
+  /** The answer that the picture shows. */
+  private pictured = '';
 
   constructor(
     private readonly asks: Asks,
@@ -64,7 +69,6 @@ export class PosePanel {
       ),
       el('div', { class: 'buttons' }, this.open, this.move, this.turn, this.proposed),
       this.say,
-      this.facts,
     );
     this.lay();
   }
@@ -75,7 +79,8 @@ export class PosePanel {
     this.proposed.disabled = p.choices.pose === null;
     if (this.begun !== '' && this.begun !== p.built?.number) this.end();
     const wanted = p.choices.pose ?? this.known?.pose;
-    if (!this.picture || !wanted || samePose(this.picture.pose, wanted)) return;
+    if (!this.picture || this.placing || this.picture.dragging || !wanted) return;
+    if (samePose(this.picture.pose, wanted)) return;
     this.picture.pose = wanted;
     this.asker.now?.want({ pose: wanted, parted: true });
   }
@@ -85,7 +90,7 @@ export class PosePanel {
     this.asker.now?.end();
     this.picture?.end();
     this.asker.now = this.picture = this.known = null;
-    this.begun = '';
+    this.begun = this.pictured = '';
     this.facts.replaceChildren();
     setText(this.say, '');
     this.lay();
@@ -122,22 +127,20 @@ export class PosePanel {
 
   private async told(state: PoseState, from: PoseAsker): Promise<void> {
     if (state.state === 'failed') return setText(this.say, forThePage(state.error));
-    if (state.answer) this.tell(state.answer);
+    if (state.answer) this.tell(state.answer, this.project!.name);
     if (!state.facts || this.known) return;
     this.known = state.facts;
     const moved = (pose: Pose) => from.want({ pose, parted: false });
-    const placed = (pose: Pose) => {
-      from.want({ pose, parted: true });
-      this.asks.choose({ pose });
-    };
-    const picture = new PoseView(state.facts, moved, placed);
+    const picture = new PoseView(state.facts, moved, (pose) => void this.placed(pose, from));
     this.picture = picture;
     const { name } = this.project!;
     const pose = this.project!.choices.pose ?? state.facts.pose;
     picture.pose = pose;
+    // The numbers are read while a hand drags in the picture.
+    picture.root.append(this.facts);
     this.view.root.append(picture.root);
     this.mode(false);
-    setText(this.say, text('Drag an arrow, a square or a ring at the neck. Drag beside it to look from elsewhere.'));
+    setText(this.say, howTo());
     try {
       await picture.load((surface) => this.api.poseSurface(name, surface, this.begun));
     } catch (e) {
@@ -146,7 +149,32 @@ export class PosePanel {
     from.want({ pose, parted: true });
   }
 
-  private tell(a: PoseAnswer): void {
+  private showLobes(a: PoseAnswer, name: string): void {
+    const { picture } = this;
+    const answer = JSON.stringify(a);
+    if (!picture || answer === this.pictured) return;
+    this.pictured = answer;
+    if (!a.parted || !a.sound || !samePose(a.pose, picture.pose)) return picture.showWhole();
+    const url = (surface: string) => this.api.poseSurface(name, surface, this.begun);
+    picture.showParted(a.surfaces, url).catch((e: unknown) => setText(this.say, reason(e)));
+  }
+
+  /** After a release. What comes meanwhile tells of the place before. */
+  private async placed(pose: Pose, from: PoseAsker): Promise<void> {
+    from.want({ pose, parted: true });
+    this.placing = true;
+    await this.asks.act('choose', { choices: { pose } });
+    this.placing = false;
+    if (this.project) this.show(this.project);
+  }
+
+  private tell(a: PoseAnswer, name: string): void {
+    this.showLobes(a, name);
+    if (!a.sound) {
+      // Numbers of crushed lobes would tell nothing.
+      const words = text('The lobes would be crushed here. Move the vessel to where it fits.');
+      return this.facts.replaceChildren(el('caption', { class: 'bad', 'data-parted': 'true' }, words));
+    }
     const row = (what: string, value: string, good: boolean, id: string) =>
       el('tr', { 'data-what': id }, el('th', { scope: 'row' }, what), el('td', { class: good ? '' : 'bad' }, value));
     const mm = (value: number) => `${fixed(value, 2)} mm`;

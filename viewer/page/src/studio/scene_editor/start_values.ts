@@ -39,9 +39,10 @@ function namedBy(all: Declarations, p: Parameter, scene: OutlineElement): string
   return '';
 }
 
+/** Meshes of anatomy mostly are in mm. */
 export function startValue(all: Declarations, p: Parameter, scene: OutlineElement): string {
   if (p.fallback !== '') return p.fallback;
-  if (p.choices.length > 0) return p.choices[0]!;
+  if (p.choices.length > 0) return p.choices.includes('mm') ? 'mm' : p.choices[0]!;
   if (p.reference !== '') return namedBy(all, p, scene);
   return p.numbers === null ? '' : numbersOf(p);
 }
