@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/model/formats/dicom_mark.h"
+#include "engine/sharing/dicom_mark.h"
 #include "core/model/formats/file_bytes.h"
 
 namespace insula::case_builder {

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "core/base/text.h"
-#include "core/model/formats/dicom_mark.h"
+#include "engine/sharing/dicom_mark.h"
 
 namespace insula::gateway {
 namespace {
