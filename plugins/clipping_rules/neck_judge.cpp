@@ -11,7 +11,7 @@
 namespace insula {
 namespace {
 
-constexpr double trace = 0.1;                  // share of neck or sac below which there is no remnant
+constexpr double trace = 0.1;           // share of neck or sac below which there is no remnant
 constexpr SacRemnant::Open all_open{};  // without any clip
 
 }  // namespace

@@ -32,7 +32,8 @@ class Checker:
         self.counts = {}
         self.help = {}
         self.declared = defaults.Declared(source, insula, haptic_server)
-        self.folders = {p.name for p in source.iterdir() if p.is_dir() and p.name != "build"}
+        made = ("build", "dist")
+        self.folders = {p.name for p in source.iterdir() if p.is_dir() and p.name not in made}
         self.tests = set()
         for folder in ("core", "plugins", "haptic_server", "engine", "viewer/gateway", "tests", "tools"):
             for file in [*(source / folder).rglob("*.cpp"), *(source / folder).rglob("*_for_test.h")]:
