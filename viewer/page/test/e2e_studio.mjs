@@ -182,7 +182,7 @@ try {
   await remnant.press('Tab');
   await page.getByRole('checkbox', { name: 'Fifteen minutes are over' }).uncheck();
   await page.getByText('Choices have changed since: build again.').waitFor(patience);
-  await page.getByLabel('Exercise', { exact: true }).selectOption('2');
+  await page.locator('.goals').getByRole('combobox', { name: 'Exercise' }).selectOption('2');
   const strands = page.getByRole('group', { name: 'Strands to the frontal lobe' });
   await strands.getByLabel('How densely they stand').fill('30');
   await strands.getByLabel('How densely they stand').press('Tab');

@@ -18,6 +18,7 @@ import { ScanStep } from './scan/scan_step';
 import { Views } from './scan/views';
 import type { ScenesApi } from './scene_editor/api';
 import { SurfaceView } from './surface_view';
+import { undoKeys } from './undo_keys';
 import { PaintPanel } from './wall_paint/paint_panel';
 import { WallPanel } from './wall_panel';
 import { reason } from './wording';
@@ -50,7 +51,7 @@ export class Editor {
   private timer = 0;
   private ended = false;
   private project: Project | null = null;
-  private readonly keys = (e: KeyboardEvent) => this.key(e);
+  private readonly endKeys: () => void;
 
   constructor(
     private readonly api: StudioApi,
@@ -86,24 +87,17 @@ export class Editor {
     const bar = el('div', { class: 'bar' }, this.title, this.undo, this.redo, this.say);
     const side = el('div', { class: 'steps' }, ...this.panels.map((p) => p.root));
     this.root.append(bar, el('div', { class: 'columns' }, this.views.root, side));
-    window.addEventListener('keydown', this.keys);
+    this.endKeys = undoKeys((what) => void this.act(what));
     void this.follow();
   }
 
   end(): void {
     this.ended = true;
     window.clearTimeout(this.timer);
-    window.removeEventListener('keydown', this.keys);
+    this.endKeys();
     this.scan.end();
     this.pose.end();
     this.view.end();
-  }
-
-  private key(e: KeyboardEvent): void {
-    const typing = e.target instanceof HTMLInputElement && ['text', 'number'].includes(e.target.type);
-    if (!(e.ctrlKey || e.metaKey) || typing || e.key.toLowerCase() !== 'z') return;
-    e.preventDefault();
-    void this.act(e.shiftKey ? 'redo' : 'undo');
   }
 
   private async act(act: Act, more: object = {}): Promise<Project | null> {

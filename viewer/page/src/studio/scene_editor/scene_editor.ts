@@ -5,6 +5,7 @@
 import { el, setText } from '../../hud/dom';
 import { text } from '../../languages/text';
 import { select } from '../fields';
+import { undoKeys } from '../undo_keys';
 import { reason } from '../wording';
 import type { Problem, SceneCopy, ScenesApi, SceneText } from './api';
 import type { Declarations, ElementKind, Parameter } from './declarations';
@@ -36,6 +37,7 @@ export class SceneEditor {
   private readonly say = el('p', { class: 'say', role: 'alert' });
   private readonly state = el('p', { class: 'state', role: 'status' });
   private readonly file = el('select', { 'aria-label': text('File') });
+  private readonly endKeys: () => void;
   private readonly undo = el('button', { type: 'button' }, text('Undo'));
   private readonly redo = el('button', { type: 'button' }, text('Redo'));
   private readonly content: TextPanel;
@@ -91,6 +93,7 @@ export class SceneEditor {
     this.fileChoice();
     this.undo.onclick = () => this.content.undo();
     this.redo.onclick = () => this.content.redo();
+    this.endKeys = undoKeys((what) => this.content[what]());
     this.build();
   }
 
@@ -114,6 +117,7 @@ export class SceneEditor {
   }
 
   end(): void {
+    this.endKeys();
     this.keep();
     this.content.end();
     this.live.end();
