@@ -11,6 +11,7 @@ import argparse
 import json
 import math
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -18,10 +19,14 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import texts  # noqa: E402
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "motions"))
+import vectors  # noqa: E402
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASES = ROOT / "scenes" / "cases"
 PROGRAMS = ROOT / "build" / "release" / "bin"
 AFTERWARDS = 4.5  # s after the hand has left the field
+LED = 3.5  # s from the home of the applier to the start of a motion
 HELD = 9  # row of a motion of the case builder: the shut clip is still held
 KEPT = ("artery", "lobes", "artery.xml", "field.xml")
 
@@ -144,6 +149,25 @@ def borrowed(motion):
     return text
 
 
+def led_from_home(text, folder, lead):
+    """A motion that begins at the home of the applier, and turns the clip `lead` mm outside of its former start."""
+    field = (folder / "field.xml").read_text(encoding="utf-8")
+    found = re.search(r'<clip_applier [^>]*home="([^"]*) mm" shaft="([^"]*)" flat="([^"]*)"', field)
+    home, shaft, flat = ([float(w) for w in found[k].split()] for k in (1, 2, 3))
+    z = vectors.unit(shaft)
+    x = vectors.across(flat, z)
+    rows = text.split("\n")[:-1]
+    first = next(k for k, row in enumerate(rows) if ",right," in row)
+    p, q = ([float(w) for w in rows[first].split(",")[a:b]] for a, b in ((2, 5), (5, 9)))
+    w, i, j, k = q
+    out = [2 * (i * k + w * j), 2 * (j * k - w * i), 1 - 2 * (i * i + j * j)]  # the shaft in the scene
+    begun = [v / 1000 for v in home] + list(vectors.quaternion(x, vectors.cross(z, x), z))
+    turned = [a + lead / 1000 * b for a, b in zip(p, out)] + q
+    row = lambda time, pose: "%g,right," % time + ",".join("%.6f" % v for v in pose) + ",0,0"
+    later = [",".join(["%g" % (float(r.split(",")[0]) + LED)] + r.split(",")[1:]) for r in rows[first:]]
+    return "\n".join(rows[:first] + [row(0.3, begun), row(1.8, turned)] + later) + "\n"
+
+
 def write_motions(case, approach, folder, work):
     if "from" in case.get("steady", {}):
         for name, motion in (("steady", case["steady"]), (case["fails"]["motion"], case["fails"])):
@@ -154,11 +178,13 @@ def write_motions(case, approach, folder, work):
     rows[-1] = ",".join(["%g" % (float(before[0]) + AFTERWARDS)] + last[1:])
     dome, out = directions(read(folder / "artery/vessel.json"), approach)
     shift = lambda m: [m.get("raise_mm", 0) * d + m.get("back_mm", 0) * o for d, o in zip(dome, out)]
-    (folder / "case_steady.csv").write_text(moved(rows, shift(case.get("steady", {}))), encoding="utf-8")
+    lead = case.get("lead_mm", 0)
+    led = lambda text: led_from_home(text, folder, lead) if lead else text
+    (folder / "case_steady.csv").write_text(led(moved(rows, shift(case.get("steady", {})))), encoding="utf-8")
     failing = case["fails"]
     then = shift(failing["then"]) if "then" in failing else None
     bad = moved(rows, shift(failing), then, failing.get("shut", False))
-    (folder / ("case_%s.csv" % failing["motion"])).write_text(bad, encoding="utf-8")
+    (folder / ("case_%s.csv" % failing["motion"])).write_text(led(bad), encoding="utf-8")
 
 
 def approach_of(name):
