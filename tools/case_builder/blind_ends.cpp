@@ -28,6 +28,7 @@ constexpr double full_calibre = 0.93;       // of the diameter farther in, where
 constexpr std::size_t hidden_sections = 3;  // in a row, within a tube
 constexpr double vessel_length = 1.4;       // diameters of one calibre: a short vessel, or a sac
 constexpr double sure_length = 2;           // diameters of one calibre, which no sac has
+constexpr double torn_length = 0.7;         // the same of a known end
 constexpr double farthest = 8;              // diameters of the tube that are looked at
 
 /// The edges of a surface, with shortest distances along them.
@@ -210,6 +211,7 @@ struct Tube {
   Vec3 end = Vec3::Zero(), outward = Vec3::UnitZ();  ///< where it is cut
   double diameter = 0;                               ///< one diameter farther in, mm
   double length = 0;                                 ///< in diameters
+  bool torn = false;                                 ///< at a torn border
 };
 
 /// Turns the plane in which a tube is cut to lie across it, along the chord between two sections, and moves it inward
@@ -283,33 +285,48 @@ bool on_cap(const artery::Surface& s, const Vec3& p) {
   return false;
 }
 
+int nearest_vertex(const TriMesh& m, const Vec3& p) {
+  const auto away = [&](const Vec3& v) { return (v - p).squaredNorm(); };
+  const auto at = std::min_element(m.vertices.begin(), m.vertices.end(),
+                                   [&](const Vec3& a, const Vec3& b) { return away(a) < away(b); });
+  return int(at - m.vertices.begin());
+}
+
 }  // namespace
 
-void cut_blind_ends(artery::Surface& s, std::vector<Note>& notes) {
+void cut_blind_ends(artery::Surface& s, const std::vector<TornBorder>& torn, std::vector<Note>& notes) {
   const Geodesics geodesics(s.mesh);
   const std::vector<double> d = geodesics.from(farthest_vertex(geodesics.from(s.mesh.triangles.front()[0])));
   std::vector<int> tips = prominent_maxima(geodesics, d, least_prominence * d[std::size_t(farthest_vertex(d))]);
   tips.push_back(int(std::min_element(d.begin(), d.end()) - d.begin()));
   std::vector<Tube> ends;
-  for (const int tip : tips)
-    if (!on_cap(s, s.mesh.vertices[std::size_t(tip)]))
-      ends.push_back(tube_at(s.mesh, lines_of_distance(s.mesh, geodesics.from(tip))));
+  for (const int tip : tips) {
+    const Vec3& p = s.mesh.vertices[std::size_t(tip)];
+    const bool known = std::any_of(torn.begin(), torn.end(), [&](const TornBorder& b) {
+      return (b.centre - p).norm() < b.perimeter / std::numbers::pi;
+    });
+    if (!known && !on_cap(s, p)) ends.push_back(tube_at(s.mesh, lines_of_distance(s.mesh, geodesics.from(tip))));
+  }
   std::stable_sort(ends.begin(), ends.end(), [](const Tube& a, const Tube& b) { return a.length < b.length; });
   // The one that is least like a vessel is the sac, unless the sac is so low that it is no end at all.
-  for (std::size_t k = 0; k < ends.size(); ++k) {
-    const Tube& e = ends[k];
-    if (e.length < (k == 0 ? sure_length : vessel_length)) continue;
+  if (!ends.empty() && ends.front().length < sure_length) ends.erase(ends.begin());
+  std::erase_if(ends, [](const Tube& e) { return e.length < vessel_length; });
+  for (const TornBorder& b : torn) {
+    const int tip = nearest_vertex(s.mesh, b.centre);
+    Tube tube = tube_at(s.mesh, lines_of_distance(s.mesh, geodesics.from(tip)));
+    tube.torn = true;
+    if (tube.length >= torn_length) ends.push_back(tube);
+  }
+  for (const Tube& e : ends) {
     try {
       cut_off(s, e.end, e.outward, fmt::format("end_{}", s.caps.size()));
     } catch (const InputError&) {
       continue;  // no single tube there
     }
-    notes.push_back(
-        {Note::Kind::repair,
-         fmt::format("The end at {} was closed and not flat. It was cut straight where the vessel is {:.2f} mm "
-                     "wide.",
-                     place(e.end), e.diameter),
-         "Where it should end farther in, cut it there (--cut)."});
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("The end at {} was {}. It was cut straight where the vessel is {:.2f} mm wide.",
+                                 place(e.end), e.torn ? "torn" : "closed and not flat", e.diameter),
+                     "Where it should end farther in, cut it there (--cut)."});
   }
 }
 
