@@ -53,18 +53,22 @@ NeckProposal of_line(const std::string& method, const Vessel& bare, const Vessel
 
 }  // namespace
 
-std::vector<NeckProposal> propose_necks(const Vessel& bare, const std::vector<double>& radii) {
-  const TriMesh& m = bare.wall.mesh;
+std::vector<NeckProposal> propose_necks(Vessel& v, const std::vector<double>& radii) {
+  const TriMesh& m = v.wall.mesh;
+  const Vessel bare = v;
   Vessel cut = bare;
   for (const double bulge : bulges)
     if (!cut.neck) find_sac(cut, sac_by_cut(bare.wall, radii, bulge));
   if (!cut.neck) return {};
-  Vessel narrowest = bare;
-  sac_beyond(narrowest, narrowest_neck(cut, radii));
-  std::vector<NeckProposal> out{
-      {"narrowest section", {narrowest.neck->centre, narrowest.neck->normal}, narrowest.neck->diameter},
-      of_line("shortest line", bare, cut)};
-  const std::vector<char> chosen = dome_of(narrowest);
+  std::vector<NeckProposal> out;
+  if (const std::optional<NeckPlane> plane = narrowest_neck(cut, radii)) {
+    sac_beyond(v, *plane);
+    out.push_back({"narrowest section", {v.neck->centre, v.neck->normal}, v.neck->diameter});
+  } else {
+    v = cut;
+  }
+  const std::vector<char> chosen = dome_of(v);
+  out.push_back(of_line("shortest line", bare, cut));
   out.back().agreement = dice(m, chosen, dome_of(cut));
   std::vector<char> outside(m.vertices.size());
   for (const int i : largest_bulge(m, radii, tube)) outside[std::size_t(i)] = 1;

@@ -66,6 +66,27 @@ Vessel made(const artery::Surface& s, const artery::ImportOptions& options) {
   }
 }
 
+/// The shorter vessel, with the neck in the same place, now on finer triangles. A proposed plane that parts no dome
+/// there, as where a branch begins at its edge, is looked for again.
+Vessel made_again(const artery::Surface& s, artery::ImportOptions options, const artery::NeckPlane& neck,
+                  const std::vector<artery::NeckProposal>& proposals) {
+  const auto as_before = [&] {
+    Vessel v = made(s, options);
+    v.proposals = proposals;
+    return v;
+  };
+  if (options.neck) return as_before();
+  if (!proposals.empty() && proposals.front().planar) {
+    options.neck = neck;
+    try {
+      return as_before();
+    } catch (const InputError&) {
+      options.neck.reset();
+    }
+  }
+  return made(s, options);
+}
+
 void check_sound(const Vessel& v) {
   const artery::Quality q = artery::quality(v.wall.mesh);
   if (!q.closed || q.components != 1)
@@ -109,9 +130,7 @@ Vessel wall_of(const artery::Surface& surface, const Options& o, std::vector<Not
       s = shorter;
       options.inlet = v.wall.caps[0].centre;  // the piece of the old inlet that is left is the nearest to it
       progress.step("the wall's triangles");
-      if (!options.neck) options.neck = neck;  // the same place, now on finer triangles
-      v = made(s, options);
-      v.proposals = proposals;
+      v = made_again(s, options, neck, proposals);
     }
   }
   if (v.wall.caps.size() < 2)
