@@ -30,6 +30,8 @@ constexpr double vessel_length = 1.4;       // diameters of one calibre: a short
 constexpr double sure_length = 2;           // diameters of one calibre, which no sac has
 constexpr double torn_length = 0.7;         // the same of a known end
 constexpr double farthest = 8;              // diameters of the tube that are looked at
+constexpr double dome_width = 1.3;          // diameters of the tube behind: what is so wide nearer to the tip is a dome
+constexpr double dome_length = 0.5;         // the same, along the line
 
 /// The edges of a surface, with shortest distances along them.
 class Geodesics {
@@ -234,11 +236,21 @@ void straighten(const TriMesh& m, Tube& tube) {
   }
 }
 
-/// The first tube of a vessel's length on the way from a tip inward, or else the longest.
+/// Whether a dome lies before a section, between the tip and a tube of this diameter: a sac on a stalk.
+bool dome_before(const Sections& s, std::size_t first, double diameter) {
+  double wide = 0;
+  for (std::size_t k = 1; k < first; ++k)
+    if (s.loop[k].diameter > dome_width * diameter) wide += s.arc[k] - s.arc[k - 1];
+  return wide > dome_length * diameter;
+}
+
+/// The first tube of a vessel's length on the way from a tip inward, or else the longest. What a dome lies before is
+/// none: its length is 0.
 Tube tube_at(const TriMesh& m, const std::vector<Loop>& lines) {
   const Sections s = sections_along(m, sections_along(m, lines).loop);
   Tube best;
-  double begin = 0;  // of the best one, mm from the tip
+  std::size_t begins = 0;  // the best one
+  double begin = 0;        // the same, mm from the tip
   for (std::size_t first = 0; first < s.loop.size(); ++first) {
     std::vector<double> diameters;
     double low = infinity, high = 0;
@@ -267,8 +279,9 @@ Tube tube_at(const TriMesh& m, const std::vector<Loop>& lines) {
     const Vec3 along = s.loop[cut].middle - s.loop[inner].middle;
     best = {s.loop[cut].middle, along.norm() > 0 ? Vec3(along.normalized()) : s.outward[cut], s.loop[inner].diameter,
             length};
-    begin = s.arc[first];
+    begins = first, begin = s.arc[first];
   }
+  if (dome_before(s, begins, best.diameter)) return {};
   straighten(m, best);
   return best;
 }

@@ -146,6 +146,18 @@ TEST(BlindEnds, KnownEndsAndTheSacBetweenThemStay) {
   }
 }
 
+/// The stalk has one calibre for longer than a vessel's end needs, and a wider dome lies before it.
+TEST(BlindEnds, ASacOnAStalkStays) {
+  artery::test::Dome dome;
+  dome.neck_diameter = 1.6, dome.radius = 2, dome.half_height = 2, dome.lift = 2.2;
+  const GeneratedArtery a = artery::test::on_fork("stalk", {}, dome, 0, 0);
+  Surface s = a.surface();
+  std::vector<Note> notes;
+  cut_blind_ends(s, {}, notes);
+  EXPECT_TRUE(notes.empty()) << notes.front().text;
+  expect_the_ends(a, with_round_ends(a), 2);
+}
+
 /// As the border of a scan cuts a vessel that leaves it at a small angle.
 TEST(BlindEnds, EndsThatWereCutAslantAreNotCutAgain) {
   for (const GeneratedArtery& a : some_arteries()) {
