@@ -100,15 +100,6 @@ TEST(NeckProposals, TheShortestLineIsTheNeckWhereABranchLeavesTheDome) {
   EXPECT_GT(counted(v, a).sac, 25);
 }
 
-TEST(NeckProposals, ASmallDomeOnLongVesselsIsFound) {
-  test::Dome dome;
-  dome.neck_diameter = 2, dome.radius = 1.6, dome.half_height = 1.6, dome.lift = 0.3;
-  const test::GeneratedArtery a = test::on_fork("long", {1.4, 1.0, 1.1, 60, 60, 40}, dome, 5, 90);
-  const Vessel v = vessel_of(a.surface(), {});
-  ASSERT_TRUE(v.neck);
-  EXPECT_LT((v.neck->centre - a.dome.root).norm(), 1.2);  // the triangles are long, too
-}
-
 /// Both branches are as thin as two cells of the grid in which the paths are found.
 TEST(GridCentrelines, RunAlongTheMiddleOfThinVessels) {
   test::Dome dome;

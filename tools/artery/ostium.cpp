@@ -6,16 +6,13 @@
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 #include <map>
-#include <numbers>
 
 #include "import_parts.h"
-#include "neck_planes.h"
 
 namespace insula::artery {
 namespace {
 
 constexpr double min_sac_share = 0.03;  // of the surface's vertices
-constexpr double min_sac_area = 1;      // of the inlet's: the same, of a small dome on long vessels
 constexpr double top_share = 0.4;       // of the way up from the first bulge: from here on it is the dome's top
 constexpr double higher_costs = 1.5;    // a line at the top costs so much more, since every dome is narrow there
 
@@ -37,26 +34,6 @@ void join(Graph& g, std::size_t a, std::size_t b, double there, double back) {
   put(boost::edge_reverse, g, e, r), put(boost::edge_reverse, g, r, e);
 }
 
-double area_of(const TriMesh& m, const std::vector<int>& vertices) {
-  std::vector<char> in(m.vertices.size());
-  for (const int i : vertices) in[std::size_t(i)] = 1;
-  double sum = 0;
-  for (const auto& t : m.triangles) {
-    const auto at = [&](std::size_t k) -> const Vec3& { return m.vertices[std::size_t(t[k])]; };
-    if (in[std::size_t(t[0])] && in[std::size_t(t[1])] && in[std::size_t(t[2])])
-      sum += 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
-  }
-  return sum;
-}
-
-/// Whether so many vertices may be a sac.
-bool is_large(const Surface& s, const std::vector<int>& bulging) {
-  const double n = double(bulging.size()), inlet = s.caps.empty() ? 0 : s.caps[0].radius;
-  if (n >= min_sac_share * double(s.mesh.vertices.size())) return true;
-  return bulging.size() >= 2 * min_sac_vertices && inlet > 0 &&
-         area_of(s.mesh, bulging) > min_sac_area * std::numbers::pi * inlet * inlet;
-}
-
 }  // namespace
 
 std::vector<int> largest_bulge(const TriMesh& m, const std::vector<double>& radii, double limit) {
@@ -71,7 +48,7 @@ std::vector<int> largest_bulge(const TriMesh& m, const std::vector<double>& radi
 std::vector<char> sac_by_cut(const Surface& s, const std::vector<double>& radii, double bulge) {
   const TriMesh& m = s.mesh;
   const std::vector<int> bulging = largest_bulge(m, radii, bulge);
-  if (!is_large(s, bulging)) return {};
+  if (double(bulging.size()) < min_sac_share * double(m.vertices.size())) return {};
   double most = 0;
   for (const int i : bulging) most = std::max(most, radii[std::size_t(i)]);
   std::vector<char> top(m.vertices.size());
