@@ -193,10 +193,11 @@ Paths paths_to_all_caps(const Surface& surface, const WallPoints& wall) {
   }
   if (found->lost >= 0) {
     const CapPlane& cap = surface.caps[std::size_t(found->lost)];
-    throw InputError(fmt::format(
+    const std::string why = fmt::format(
         "no way leads from the inlet to {} at ({:.1f}, {:.1f}, {:.1f}), {:.2f} mm across: the vessel is too thin on "
         "the way for a grid of {:.2g} mm. Cut it off before it gets so thin (--cut), or leave out what lies far away",
-        cap.name, cap.centre.x(), cap.centre.y(), cap.centre.z(), 2 * cap.radius, found->grid.step));
+        cap.name, cap.centre.x(), cap.centre.y(), cap.centre.z(), 2 * cap.radius, found->grid.step);
+    throw LostOutlet(why, cap.centre);
   }
   return std::move(*found);
 }

@@ -51,8 +51,8 @@ void sac_beyond(Vessel& vessel, const NeckPlane& plane);
 std::optional<NeckPlane> narrowest_neck(const Vessel& vessel, const std::vector<double>& radii);
 /// Necks by three methods, the best first: the narrowest section near the shortest line, the plane of that line
 /// (sac_by_cut), and the border of what lies outside of the vessels' tubes (Piccinelli et al. 2012). Empty when nothing
-/// bulges. `vessel` has no sac yet, and gets that of the first one. Where no plane parts what bulges, this is the
-/// shortest line.
+/// bulges. `vessel` has no sac yet, and gets that of the first one. Where no plane parts what bulges, or the narrowest
+/// one parts something else than the others find, this is the shortest line.
 std::vector<NeckProposal> propose_necks(Vessel& vessel, const std::vector<double>& radii);
 
 }  // namespace insula::artery
