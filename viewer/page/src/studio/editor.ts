@@ -6,6 +6,7 @@ import { text } from '../languages/text';
 import type { Act, Project, StudioApi } from './api';
 import { BuildPanel } from './build_panel';
 import { CasePanel } from './case_panel';
+import { type Change, Deeds } from './deeds';
 import { FilePanel } from './file_panel';
 import { GoalsPanel } from './goals/goals_panel';
 import { NeckPanel } from './neck_panel';
@@ -27,8 +28,8 @@ const everyMs = 600;
 
 /** What the panels ask for. */
 export interface Asks {
-  /** Changes choices. */
-  choose(choices: object): void;
+  /** Changes choices. What depends on the present ones is a function of them. */
+  choose(change: Change): Promise<Project | null>;
   act(act: Act, more?: object): Promise<Project | null>;
   /** Shows the surface, to be worked on. */
   toSurface(): void;
@@ -52,15 +53,25 @@ export class Editor {
   private ended = false;
   private project: Project | null = null;
   private readonly endKeys: () => void;
+  private readonly deeds: Deeds;
 
   constructor(
     private readonly api: StudioApi,
-    private readonly name: string,
+    name: string,
     scenes: ScenesApi,
   ) {
+    const gateway = {
+      project: () => api.project(name),
+      act: (act: Act, more: object) => api.act(name, act, more),
+    };
+    this.deeds = new Deeds(
+      gateway,
+      (project, ofDeed) => this.told(project, ofDeed),
+      (e) => setText(this.say, reason(e)),
+    );
     const asks: Asks = {
-      choose: (choices) => void this.act('choose', { choices }),
-      act: (act, more) => this.act(act, more),
+      choose: (change) => this.deeds.choose(change),
+      act: (act, more) => this.deeds.act(act, more),
       toSurface: () => this.views.choose(true),
     };
     this.scan = new ScanStep(asks, api);
@@ -81,13 +92,13 @@ export class Editor {
       new PaintPanel(asks, this.view, scenes),
       this.pose,
     ];
-    this.undo.onclick = () => void this.act('undo');
-    this.redo.onclick = () => void this.act('redo');
+    this.undo.onclick = () => void this.deeds.act('undo');
+    this.redo.onclick = () => void this.deeds.act('redo');
     setText(this.title, name);
     const bar = el('div', { class: 'bar' }, this.title, this.undo, this.redo, this.say);
     const side = el('div', { class: 'steps' }, ...this.panels.map((p) => p.root));
     this.root.append(bar, el('div', { class: 'columns' }, this.views.root, side));
-    this.endKeys = undoKeys((what) => void this.act(what));
+    this.endKeys = undoKeys((what) => void this.deeds.act(what));
     void this.follow();
   }
 
@@ -100,26 +111,15 @@ export class Editor {
     this.view.end();
   }
 
-  private async act(act: Act, more: object = {}): Promise<Project | null> {
-    try {
-      const project = await this.api.act(this.name, act, more);
-      setText(this.say, '');
-      this.show(project);
-      return project;
-    } catch (e) {
-      setText(this.say, reason(e));
-      return null;
-    }
+  /** A refusal stands until something has been done. */
+  private told(project: Project, ofDeed: boolean): void {
+    if (this.ended) return;
+    if (ofDeed) setText(this.say, '');
+    this.show(project);
   }
 
   private async follow(): Promise<void> {
-    try {
-      const project = await this.api.project(this.name);
-      if (this.ended) return;
-      this.show(project);
-    } catch (e) {
-      setText(this.say, reason(e));
-    }
+    await this.deeds.follow();
     if (!this.ended) this.timer = window.setTimeout(() => void this.follow(), everyMs);
   }
 

@@ -21,7 +21,8 @@ export function parameterField(p: Parameter, id: string, words: string, value: P
   const input = el('input', { type: 'text', autocomplete: 'off', id, 'aria-describedby': `${id}-about` });
   const shown = value.chosen ?? value.proposed;
   const parts = partsOf(shown);
-  input.value = parts && parts.unit === unit ? parts.numbers : shown;
+  // What is typed later differs from it.
+  input.defaultValue = parts && parts.unit === unit ? parts.numbers : shown;
   const about = el('p', { class: 'hint', id: `${id}-about` });
   const typed = () => {
     const given = partsOf(input.value);
@@ -37,8 +38,10 @@ export function parameterField(p: Parameter, id: string, words: string, value: P
   };
   input.oninput = tell;
   input.onchange = () => {
-    if (input.value.trim() === '') return value.choose(null);
-    if (tell()) value.choose(typed() === value.proposed ? null : typed());
+    const empty = input.value.trim() === '';
+    if (!empty && !tell()) return;
+    input.defaultValue = input.value;
+    value.choose(empty || typed() === value.proposed ? null : typed());
   };
   tell();
   const label = el('label', { for: id }, words === '' ? el('span', { lang: 'en' }, p.doc) : words);

@@ -39,7 +39,7 @@ export class WallPanel {
     private readonly asks: Asks,
     private readonly api: ScenesApi,
   ) {
-    this.proposed.onclick = () => asks.choose({ walls: [] });
+    this.proposed.onclick = () => void asks.choose({ walls: [] });
     this.root = el(
       'section',
       { class: 'walls' },
@@ -82,7 +82,8 @@ export class WallPanel {
       const value = {
         proposed: proposedValue(wall, name),
         chosen: chosenValue(changes, region, name),
-        choose: (chosen: string | null) => this.asks.choose({ walls: withWall(changes, region, name, chosen) }),
+        choose: (chosen: string | null) =>
+          void this.asks.choose((now) => ({ walls: withWall(now.walls, region, name, chosen) })),
       };
       return [parameterField(parameter, `wall-${region}-${name}`, parameterText(name), value)];
     });

@@ -28,7 +28,7 @@ export class GoalsPanel {
     private readonly api: ScenesApi,
   ) {
     this.exercise.onchange = () => this.fill();
-    this.proposed.onclick = () => asks.choose({ rules: [] });
+    this.proposed.onclick = () => void asks.choose({ rules: [] });
     this.root = el(
       'section',
       { class: 'goals' },
@@ -93,7 +93,7 @@ export class GoalsPanel {
       const row = new RuleRow(rule, kind, `rule-${exercise}-${rule.id}`, {
         chosen: (parameter) => changeOf(changes, exercise, rule.id, parameter),
         choose: (parameter, value) =>
-          this.asks.choose({ rules: withChange(changes, exercise, rule.id, parameter, value) }),
+          void this.asks.choose((now) => ({ rules: withChange(now.rules, exercise, rule.id, parameter, value) })),
       });
       return [row.root];
     });

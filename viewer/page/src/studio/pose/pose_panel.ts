@@ -163,7 +163,7 @@ export class PosePanel {
   private async placed(pose: Pose, from: PoseAsker): Promise<void> {
     from.want({ pose, parted: true });
     this.placing = true;
-    await this.asks.act('choose', { choices: { pose } });
+    await this.asks.choose({ pose });
     this.placing = false;
     if (this.project) this.show(this.project);
   }

@@ -50,9 +50,10 @@ export class CutPanel {
     const { cuts } = p.choices;
     this.begin.disabled = cuts.length >= mostCuts || !p.facts;
     this.list.replaceChildren(
-      ...cuts.map((_cut, k) => {
+      ...cuts.map((cut, k) => {
         const remove = el('button', { type: 'button' }, text('Remove cut {n}', { n: k + 1 }));
-        remove.onclick = () => this.asks.choose({ cuts: cuts.filter((_c, other) => other !== k) });
+        remove.onclick = () =>
+          void this.asks.choose((now) => ({ cuts: now.cuts.filter((c) => String(c) !== String(cut)) }));
         return el('li', {}, remove);
       }),
     );
@@ -90,9 +91,10 @@ export class CutPanel {
   }
 
   private make(): void {
-    const { planned, project } = this;
-    if (!planned || !project) return;
+    const { planned } = this;
+    if (!planned) return;
     this.stop('');
-    this.asks.choose({ cuts: [...project.choices.cuts, [...asPoint(planned.point), ...asPoint(planned.normal)]] });
+    const cut = [...asPoint(planned.point), ...asPoint(planned.normal)];
+    void this.asks.choose((now) => ({ cuts: [...now.cuts, cut] }));
   }
 }

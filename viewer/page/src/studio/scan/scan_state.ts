@@ -30,7 +30,7 @@ export class ScanState {
   constructor(
     readonly block: Block,
     private readonly changed: () => void,
-    private readonly painted: (strokes: Stroke[]) => void,
+    private readonly painted: (stroke: Stroke) => void,
   ) {
     this.cross = block.size.map((n) => Math.floor(n / 2)) as Vec;
     this.threshold = block.facts.threshold;
@@ -76,7 +76,7 @@ export class ScanState {
     this.drawn = null;
     if (!drawn) return;
     this.paint = [...this.paint, drawn];
-    this.painted(this.paint);
+    this.painted(drawn);
   }
 
   window(low: number, high: number): void {

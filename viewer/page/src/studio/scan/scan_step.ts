@@ -69,7 +69,7 @@ export class ScanStep {
       this.shown = new ScanView(
         Block.of(facts, bytes),
         () => this.panel?.follow(),
-        (paint) => this.asks.choose({ paint }),
+        (stroke) => void this.asks.choose((now) => ({ paint: [...now.paint, stroke] })),
       );
       this.panel = new ScanPanel(this.asks, facts, this.shown.state);
       this.view.replaceChildren(this.shown.root);

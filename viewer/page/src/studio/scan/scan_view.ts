@@ -24,7 +24,7 @@ export class ScanView {
     block: Block,
     /** The crosshair or the window has moved. */
     private readonly moved: () => void,
-    painted: (strokes: Stroke[]) => void,
+    painted: (stroke: Stroke) => void,
   ) {
     this.state = new ScanState(block, () => this.changed(), painted);
     this.slices = ([2, 1, 0] as const).map((axis) => new SliceView(axis, this.state));

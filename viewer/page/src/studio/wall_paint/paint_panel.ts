@@ -21,6 +21,9 @@ interface Tool {
   erases: boolean;
 }
 
+/** What becomes of all parts. */
+type Paints = (now: readonly WallPatch[]) => WallPatch[];
+
 const valueNames = ['thickness', 'young'] as const;
 const units = { thickness: 'mm', young: 'MPa' };
 
@@ -42,8 +45,8 @@ export class PaintPanel {
     this.brush = new Brush({
       at: (x, y) => this.placeAt(x, y),
       adds: (stroke, p) => adds(stroke, p, this.radius()),
-      drawn: (stroke) => this.view.showPatches(this.changed(stroke)),
-      done: (stroke) => this.asks.choose({ wall_patches: this.changed(stroke) }),
+      drawn: (stroke) => this.view.showPatches(this.changed(stroke)(this.patches)),
+      done: (stroke) => this.choose(this.changed(stroke)),
     });
     view.root.append(this.brush.root);
     this.fresh.onclick = () => this.take({ part: this.patches.length, erases: false });
@@ -94,9 +97,14 @@ export class PaintPanel {
     return hit && asPoint(hit);
   }
 
-  private changed(stroke: readonly Point[]): WallPatch[] {
+  /** What a stroke does with the tool that is held now. */
+  private changed(stroke: readonly Point[]): Paints {
     const { part, erases } = this.tool ?? { part: this.patches.length, erases: false };
-    return erases ? withoutPlaces(this.patches, part, stroke) : withStroke(this.patches, part, stroke);
+    return (now) => (erases ? withoutPlaces(now, part, stroke) : withStroke(now, part, stroke));
+  }
+
+  private choose(paints: Paints): void {
+    void this.asks.choose((now) => ({ wall_patches: paints(now.wallPatches) }));
   }
 
   /** The same tool again: it is put down. */
@@ -117,13 +125,13 @@ export class PaintPanel {
   }
 
   private row(patch: WallPatch, k: number): HTMLElement {
-    const choose = (value: Partial<WallPatch>) => this.asks.choose({ wall_patches: withValue(this.patches, k, value) });
+    const choose = (value: Partial<WallPatch>) => this.choose((now) => withValue(now, k, value));
     const words = text('Part {n}', { n: k + 1 });
     const swatch = el('span', { class: 'swatch', 'aria-hidden': 'true', style: `background: ${patchColour(k)}` });
     const remove = el('button', { type: 'button' }, text('Remove'));
     remove.onclick = () => {
       this.tool = null;
-      this.asks.choose({ wall_patches: this.patches.filter((_p, other) => other !== k) });
+      this.choose((now) => now.filter((_p, other) => other !== k));
     };
     const buttons = el('div', { class: 'buttons' }, this.toolButton(k, false), this.toolButton(k, true), remove);
     const fields = [
