@@ -221,9 +221,10 @@ void cut_blind_ends(artery::Surface& s, const std::vector<TornBorder>& torn, std
     } catch (const InputError&) {
       continue;  // no single tube there
     }
-    notes.push_back({Note::Kind::repair,
-                     fmt::format("The end at {} was {}. It was cut straight where the vessel is {:.2f} mm wide.",
-                                 place(e.end), e.torn ? "torn" : "closed and not flat", e.diameter),
+    constexpr const char* said[] = {
+        "The end at {} was closed and not flat. It was cut straight where the vessel is {:.2f} mm wide.",
+        "The end at {} was torn. It was cut straight where the vessel is {:.2f} mm wide."};
+    notes.push_back({Note::Kind::repair, fmt::format(fmt::runtime(said[e.torn]), place(e.end), e.diameter),
                      "Where it should end farther in, cut it there (--cut)."});
   }
 }

@@ -9,5 +9,5 @@ export function builderTexts(): { key: string; kind: string }[];
 export function missing(language: string): string[];
 export function stale(language: string): string[];
 export function builtProgram(): string;
-export function exercisesChanged(program: string): boolean;
+export function exercisesChanged(program: string): Promise<boolean>;
 export function htmlOf(page: string): string;

@@ -7,13 +7,16 @@
 //   node scripts/texts.mjs --fill LANG FILE  adds the translations of a JSON file; takes out stale ones, sorts
 //   node scripts/texts.mjs --exercises PROGRAM [--check]
 //                                            asks insula for the texts of exercises and keeps them, or compares them
-import { execFileSync } from 'node:child_process';
+import { execFile } from 'node:child_process';
 import { existsSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { availableParallelism } from 'node:os';
 import { join, relative } from 'node:path';
 import { argv, exit } from 'node:process';
 import { fileURLToPath } from 'node:url';
+import { promisify } from 'node:util';
 import { pageTexts } from './page_texts.mjs';
 
+const run = promisify(execFile);
 const here = fileURLToPath(new URL('.', import.meta.url));
 const folder = join(here, '../src/languages/catalogues');
 const kept = join(here, 'exercise_texts.json');
@@ -116,10 +119,15 @@ function shippedFiles() {
   );
 }
 
-function askedTexts(program) {
-  const out = execFileSync(program, ['texts', ...shippedFiles()], { encoding: 'utf8', maxBuffer: 1 << 24 });
+/** The texts of all shipped files, in their order. As many processes load them as there are processors. */
+async function askedTexts(program) {
+  const files = shippedFiles();
+  const share = Math.ceil(files.length / availableParallelism());
+  const asked = [];
+  for (let k = 0; k < files.length; k += share)
+    asked.push(run(program, ['texts', ...files.slice(k, k + share)], { maxBuffer: 1 << 24 }));
   const kinds = new Map();
-  for (const { text, kind } of JSON.parse(out)) {
+  for (const { text, kind } of (await Promise.all(asked)).flatMap(({ stdout }) => JSON.parse(stdout))) {
     const key = exerciseKey(text);
     if (key !== '' && !kinds.has(key)) kinds.set(key, kind);
   }
@@ -133,7 +141,7 @@ export function builtProgram() {
 }
 
 /** Whether the program says other texts than those that are kept. */
-export const exercisesChanged = (program) => json(askedTexts(program)) !== readFileSync(kept, 'utf8');
+export const exercisesChanged = async (program) => json(await askedTexts(program)) !== readFileSync(kept, 'utf8');
 
 export const htmlOf = (page) => readFileSync(join(here, `../${page}.html`), 'utf8');
 
@@ -145,20 +153,20 @@ function fill(language, file) {
   writeFileSync(join(folder, `${language}.json`), json(Object.fromEntries(entries)));
 }
 
-function exercises(program, check) {
-  if (!check) return writeFileSync(kept, json(askedTexts(program)));
-  if (!exercisesChanged(program)) return undefined;
+async function exercises(program, check) {
+  if (!check) return writeFileSync(kept, json(await askedTexts(program)));
+  if (!(await exercisesChanged(program))) return undefined;
   console.error(
     `error: ${relative('.', kept)} is not what the program says: node scripts/texts.mjs --exercises PROGRAM`,
   );
   exit(1);
 }
 
-function main([what, first, second]) {
+async function main([what, first, second]) {
   if (what === '--missing') console.log(json(Object.fromEntries(missing(first).map((key) => [key, '']))).trim());
   else if (what === '--stale') console.log(json(stale(first)).trim());
   else if (what === '--fill') fill(first, second);
-  else if (what === '--exercises') exercises(first, second === '--check');
+  else if (what === '--exercises') await exercises(first, second === '--check');
   else {
     console.log(`${allTexts().length} texts`);
     for (const l of languages) console.log(`${l}: ${missing(l).length} missing, ${stale(l).length} stale`);
@@ -167,7 +175,7 @@ function main([what, first, second]) {
 
 if (argv[1] === fileURLToPath(import.meta.url)) {
   try {
-    main(argv.slice(2));
+    await main(argv.slice(2));
   } catch (e) {
     console.error(`error: ${e.message}`);
     exit(2);
