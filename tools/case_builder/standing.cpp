@@ -150,7 +150,7 @@ Standing standing_of(const Simulation& s) {
 std::vector<Note> judged(const Standing& standing) {
   constexpr const char* where =
       "The arms, the hands and the microscope stand about the fissure of a brain in the MNI frame: register yours to "
-      "it better, or move the arms in a copy of scenes/parts/retracted_fissure.xml.";
+      "it better, or move the retractors (--retractor).";
   std::vector<Note> notes;
   const auto tell = [&](bool good, const char* id, std::string text) {
     notes.push_back(good ? Note{Note::Kind::fact, std::move(text), ""} : problem(id, std::move(text), where));
