@@ -19,7 +19,7 @@ namespace {
 constexpr double least_across = 0.17;  // sine of the angle between shaft and flat side
 constexpr const char* form = "write \"LOBE, X Y Z mm, shaft=X Y Z, flat=X Y Z, pull=5 mm\"";
 
-[[noreturn]] void refuse(const std::string& text, const std::string& why) {
+[[noreturn]] void refuse_retractor(const std::string& text, const std::string& why) {
   throw InputError("--retractor " + text + ": " + why);
 }
 
@@ -27,13 +27,13 @@ Point direction(const std::string& name, const std::string& value, const std::st
   const auto words = split_blanks(value);
   Point out{};
   std::string why;
-  if (words.size() != 3) refuse(text, name + " is a direction: three numbers without a unit");
+  if (words.size() != 3) refuse_retractor(text, name + " is a direction: three numbers without a unit");
   for (std::size_t k = 0; k < 3; ++k) {
     const auto number = read_number(words[k], why);
-    if (!number) refuse(text, name + ": " + why);
+    if (!number) refuse_retractor(text, name + ": " + why);
     out[k] = *number;
   }
-  if (std::hypot(out[0], out[1], out[2]) < 1e-6) refuse(text, name + ": a direction must not be zero");
+  if (std::hypot(out[0], out[1], out[2]) < 1e-6) refuse_retractor(text, name + ": a direction must not be zero");
   return out;
 }
 
@@ -42,7 +42,7 @@ double pull(const std::string& value, const std::string& text) {
   const QuantityOption option{.bare = "mm", .min = "0 mm", .max = most, .doc = {}};
   std::string why;
   const auto mm = read_with_unit(value, Length::units(), Length::name, option, why);
-  if (!mm) refuse(text, "pull: " + why);
+  if (!mm) refuse_retractor(text, "pull: " + why);
   return *mm;
 }
 
@@ -51,10 +51,10 @@ void take_value(RetractorChoice& out, const Assignment& given, const std::string
   if (name == "shaft") out.shaft = direction(name, value, text);
   else if (name == "flat") out.flat = direction(name, value, text);
   else if (name == "pull") out.pull = pull(value, text);
-  else refuse(text, "a retractor has no " + in_quotes(name) + "; it has shaft, flat and pull");
+  else refuse_retractor(text, "a retractor has no " + in_quotes(name) + "; it has shaft, flat and pull");
 }
 
-Vec3 vector(const Point& p) { return {p[0], p[1], p[2]}; }
+Vec3 as_vector(const Point& p) { return {p[0], p[1], p[2]}; }
 
 /// What an author calls it.
 std::string named(std::size_t k, const RetractorAt& r) { return fmt::format("Retractor {} ({} lobe)", k + 1, r.lobe); }
@@ -99,14 +99,14 @@ RetractorChoice read_retractor(const std::string& text) {
     } else {
       std::string why;
       const auto numbers = read_shape(part, Shape::point, why);
-      if (!numbers) refuse(text, why);
-      if (has_tip) refuse(text, "it has two tips");
+      if (!numbers) refuse_retractor(text, why);
+      if (has_tip) refuse_retractor(text, "it has two tips");
       has_tip = true;
       std::copy(numbers->begin(), numbers->end(), out.tip.begin());
     }
   }
-  if (out.lobe.empty() || number_length(out.lobe) > 0) refuse(text, std::string("it names no lobe; ") + form);
-  if (!has_tip) refuse(text, std::string("it has no tip; ") + form);
+  if (out.lobe.empty() || number_length(out.lobe) > 0) refuse_retractor(text, std::string("it names no lobe; ") + form);
+  if (!has_tip) refuse_retractor(text, std::string("it has no tip; ") + form);
   return out;
 }
 
@@ -118,7 +118,7 @@ std::vector<RetractorAt> chosen_retractors(const std::vector<RetractorChoice>& c
   std::vector<RetractorAt> out;
   for (const RetractorChoice& c : choices) {
     RetractorAt r;
-    r.lobe = c.lobe, r.tip = vector(c.tip);
+    r.lobe = c.lobe, r.tip = as_vector(c.tip);
     const std::string name = named(out.size(), r);
     if (std::find(approach.lobes.begin(), approach.lobes.end(), r.lobe) == approach.lobes.end())
       throw InputError(name + ": there is no such lobe here. The lobes are " + approach.lobes[0] + " and " +
@@ -127,8 +127,8 @@ std::vector<RetractorAt> chosen_retractors(const std::vector<RetractorChoice>& c
         std::find_if(proposed.begin(), proposed.end(), [&](const RetractorAt& p) { return p.lobe == r.lobe; });
     if (like == proposed.end() && !(c.shaft && c.flat && c.pull))
       throw InputError(name + ": none is proposed for this lobe, so shaft, flat and pull must be given");
-    r.shaft = c.shaft ? vector(*c.shaft) : like->shaft;
-    r.flat = c.flat ? vector(*c.flat) : like->flat;
+    r.shaft = c.shaft ? as_vector(*c.shaft) : like->shaft;
+    r.flat = c.flat ? as_vector(*c.flat) : like->flat;
     r.pull = c.pull ? *c.pull : like->pull;
     square(name, r);
     check_place(name, r, approach);

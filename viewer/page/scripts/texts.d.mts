@@ -3,6 +3,8 @@ export function catalogue(language: string): Record<string, string>;
 export function allTexts(): { key: string; where: string }[];
 export function exerciseTexts(): { key: string; kind: string }[];
 export function builderSources(): string;
+export function builderMessages(): string[];
+export function englishMessages(): string[];
 export function builderTexts(): { key: string; kind: string }[];
 export function missing(language: string): string[];
 export function stale(language: string): string[];

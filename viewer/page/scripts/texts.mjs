@@ -48,6 +48,38 @@ export function builderSources() {
   return files.map((f) => readFileSync(join(of, f), 'utf8').replace(/"\s*\n\s*"/g, '')).join('\n');
 }
 
+/** The literals of a call or a list, from its first bracket on. */
+function literalsFrom(text, at) {
+  const found = [];
+  let depth = 0;
+  for (let k = at; k < text.length; k++) {
+    if ('({'.includes(text[k])) depth++;
+    if (')}'.includes(text[k]) && --depth <= 0) break;
+    if (text[k] === ';' && depth <= 0) break;
+    if (text[k] !== '"') continue;
+    const end = k + /^"(?:[^"\\]|\\.)*"/.exec(text.slice(k))[0].length;
+    found.push(
+      text
+        .slice(k + 1, end - 1)
+        .replace(/\\"/g, '"')
+        .replace(/\\n/g, ' '),
+    );
+    k = end - 1;
+  }
+  return found;
+}
+
+/** Sentences that the case builder can say to an author: of refusals, notes and problems with what to do. */
+export function builderMessages() {
+  const text = builderSources().replace(/'(?:"|\\.)'/g, "' '");
+  const heads = /\b(?:InputError|problem|refuse|refuse_patch)\(|\{Note::Kind::\w+|\bcheck\([a-z]/g;
+  const all = [...text.matchAll(heads)].flatMap((m) => literalsFrom(text, m.index + m[0].search(/[({]/)));
+  return [...new Set(all)].filter((words) => / /.test(words.trim()) && words.length >= 16).sort();
+}
+
+/** Those that stay in English, each for a reason that their file tells. */
+export const englishMessages = () => JSON.parse(readFileSync(join(here, 'builder_english.json'), 'utf8'));
+
 let known;
 
 /** All keys: {key, where}. Throws for a text() whose message is no literal. The sources are read once. */

@@ -1,9 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the case builder says for its command line, as what to do on this page. Some of its messages are translated.
+// What the case builder says for its command line, as what to do on this page, in the reader's language.
 import { said } from '../languages/said';
+import { languageTag } from '../languages/text';
 
 /** Options in messages of tools/case_builder, and what stands for them here. In this order. */
 const here: readonly [RegExp, string][] = [
+  [/^problem: /g, ''],
+  [/ \((?:--(?:clip|spin|turn|keep|cut|threshold|pose|retractor)(?:, )?)+\)/g, ''],
+  [/can be chosen with --clip/g, 'can be chosen'],
+  [/choose another one with --clip/g, 'choose another one'],
+  [/or with --cut\b/g, 'or here'],
+  [/ \(--brain\)/g, ''],
+  [/; --keep keeps more/g, ''],
+  [/keep more of the vessel with --keep/g, 'keep more of the vessel'],
+  [/, change it with --bleb/g, ''],
+  [/where --pose moves it/g, 'where it was moved'],
+  [
+    /[Nn]ame a point on the wanted one with --seed "[^"]*", or take the largest with --keep-largest/g,
+    'Put the seed into the wanted one',
+  ],
+  [/fewer vertices \(insula case wall FOLDER --vertices (\d+)( --on)?\)/g, 'choose $1 vertices and build again'],
   [/; --any-size takes it all the same/g, ''],
   [/insula case wall FOLDER --vertices (\d+)( --on)?/g, 'choose $1 vertices and build again'],
   [/insula case intake FOLDER INPUT --rebuild "([\d.]+ mm)" --on/g, 'make the surface anew from a grid of $1'],
@@ -24,12 +40,51 @@ const here: readonly [RegExp, string][] = [
   ],
 ];
 
+/** A message in the words of this page, in English. */
+export const inPageWords = (words: string): string =>
+  here.reduce((all, [option, action]) => all.replace(option, action), words);
+
+const fileName = /^(\/[^:]*|[^\s:]+\.[a-z\d]+)$/i;
+const place = /\(-?[\d.]+, -?[\d.]+, -?[\d.]+\)/g;
+const anyPlace = '(0, 0, 0)';
+
+/** A piece that is translated, or needs no translation. Places keep their signs. */
+function known(words: string, say: (english: string) => string): string | null {
+  if (fileName.test(words)) return words;
+  const places = words.match(place) ?? [];
+  const english = words.replace(place, anyPlace);
+  const out = say(english);
+  return out === english ? null : out.replaceAll(anyPlace, () => places.shift() ?? anyPlace);
+}
+
 /**
- * A message of the case builder for somebody who has no command line, in the reader's language if it is one of
- * scripts/builder_texts.json.
+ * A message that may have several sentences, or begin with the name of a file. say: gives a sentence in the reader's
+ * language, or back as it is. null: a part of it has no translation.
  */
-export const forThePage = (words: string): string =>
-  said(here.reduce((all, [option, action]) => all.replace(option, action), words));
+export function translated(words: string, say: (english: string) => string): string | null {
+  const whole = known(words, say);
+  if (whole !== null) return whole;
+  for (const [sign, kept] of [
+    [': ', 0],
+    ['; ', 0],
+    ['. ', 1],
+  ] as const)
+    for (let at = words.indexOf(sign); at >= 0; at = words.indexOf(sign, at + 1)) {
+      const left = known(words.slice(0, at + kept), say);
+      const right = left === null ? null : translated(words.slice(at + sign.length), say);
+      if (right !== null) return left + sign.slice(kept) + right;
+    }
+  return null;
+}
+
+/**
+ * A message of the case builder for somebody who has no command line, in the reader's language as far as
+ * scripts/builder_texts.json has it. What has no translation stays in English as a whole.
+ */
+export function forThePage(words: string): string {
+  const english = inPageWords(words);
+  return languageTag() === 'en' ? english : (translated(english, said) ?? english);
+}
 
 /** Why something was refused. */
 export const reason = (e: unknown): string => (e instanceof Error ? forThePage(e.message) : String(e));
