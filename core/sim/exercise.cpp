@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/base/input_error.h"
+#include "core/base/spoken.h"
 #include "core/sim/channel_table.h"
 #include "core/sim/motion.h"
 #include "core/sim/simulation.h"
@@ -196,7 +197,7 @@ std::vector<MetricValue> Exercise::metrics() const {
           const double si = m->value(item, hand);
           MetricValue& v = out.emplace_back();
           v.id = prefix + m->id(item);
-          v.text = m->single() ? m->spec().doc : m->spec().doc + ": " + m->items()[item];
+          v.text = m->single() ? m->spec().doc : m->spec().doc + ": " + spoken(m->items()[item]);
           v.source = m->spec().source;
           v.hand = hand;
           v.known = std::isfinite(si);
@@ -221,7 +222,7 @@ void Exercise::add_measures(const Simulation& simulation) {
       return is_measure(other) && measure_id(*other.channel, other.item) == name;
     });
     if (same > 1) name = e.component->id + "." + name;
-    if (!c.single()) text += ": " + e.group();
+    if (!c.single()) text += ": " + spoken(e.group());
     ChannelBase::Bounds band = c.good();
     for (auto& bound : band)
       if (bound) *bound *= c.display_scale();

@@ -6,6 +6,7 @@
 #include <regex>
 #include <set>
 
+#include "core/base/spoken.h"
 #include "engine/authoring/curriculum_sources.h"
 #include "engine/command_line/play.h"
 #include "engine/live/frame.h"
@@ -16,11 +17,10 @@ namespace {
 
 using TextList = nlohmann::ordered_json;
 
-/// "blood_loss" is read as "blood loss".
+/// "flow.blood_loss" is read as "flow blood loss".
 std::string spoken_name(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
   std::replace(name.begin(), name.end(), '.', ' ');
-  return name;
+  return spoken(std::move(name));
 }
 
 /// Each text once, with what it is at its first place.
@@ -36,10 +36,10 @@ class TextCollector {
   TextList list_ = TextList::array();
 };
 
-/// A text that ends in a name, "Largest force on: left_rail", is two: with "{name}" for the name, and the name. The
+/// A text that ends in a name, "Largest force on: left rail", is two: with "{name}" for the name, and the name. The
 /// page joins the translations (viewer/page/src/languages/said.ts).
 void add_with_name(TextCollector& to, const char* kind, const std::string& text) {
-  static const std::regex with_name("(.*: )([a-z][a-z0-9_]*)");
+  static const std::regex with_name("(.*: )([a-z][a-z0-9 ]*)");
   std::smatch parts;
   if (!std::regex_match(text, parts, with_name)) return to.add(kind, text);
   to.add(kind, parts.str(1) + "{name}");

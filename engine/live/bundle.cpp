@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "core/base/input_error.h"
+#include "core/base/spoken.h"
 #include "core/mechanics/shell_body.h"
 #include "core/sim/settings.h"
 #include "engine/authoring/inventory.h"
@@ -158,12 +159,6 @@ void add_wall(Json& to, const ShellBody& shell, const ChannelTable& channels) {
   to["region_value"] = {{"channel_of_region", shades}, {"pressure_of_region", pressures}};
 }
 
-std::string title_of(const std::string& name) {
-  std::string out = name;
-  std::replace(out.begin(), out.end(), '_', ' ');
-  return out;
-}
-
 /// It has an edge that the scene lets cut.
 bool cuts(const RigidBody& body) {
   const auto* sharp = dynamic_cast<const Param<Choice>*>(body.find_param("sharp"));
@@ -179,7 +174,7 @@ Json tool_json(const BundleWriter& writer, const RigidBody& body, std::size_t in
               {"id", body.id},
               {"kind", body.element},
               {"hand", instrument ? instrument->hand() : "none"},
-              {"title", title_of(model.name)},
+              {"title", spoken(model.name)},
               {"cuts", cuts(body)}};
   if (file && !file->empty() && writer.picture((*file)(), name + "_picture.svg"))
     out["picture"] = name + "_picture.svg";

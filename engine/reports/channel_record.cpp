@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/spoken.h"
 #include "engine/reports/svg_plot.h"
 
 namespace insula {
@@ -89,15 +90,6 @@ nlohmann::ordered_json ChannelRecord::json() const {
   return out;
 }
 
-namespace {
-
-std::string words(std::string name) {
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name;
-}
-
-}  // namespace
-
 std::string ChannelRecord::html() const {
   std::string out;
   for (std::size_t i = 0; i < known_.size(); ++i) {
@@ -113,15 +105,15 @@ std::string ChannelRecord::html() const {
       if (std::find(groups.begin(), groups.end(), k->group) == groups.end()) groups.push_back(k->group);
       if (std::find(names.begin(), names.end(), k->name) == names.end()) names.push_back(k->name);
     }
-    out += fmt::format("<h2>{} at the end</h2>\n<table><thead><tr><th></th>", escaped(words(component)));
+    out += fmt::format("<h2>{} at the end</h2>\n<table><thead><tr><th></th>", escaped(spoken(component)));
     for (const std::string& name : names) {
       const auto first = std::find_if(vital.begin(), vital.end(), [&](const Known* k) { return k->name == name; });
-      out += fmt::format("<th class=\"n\">{}{}</th>", escaped(words(name)),
+      out += fmt::format("<th class=\"n\">{}{}</th>", escaped(spoken(name)),
                          (*first)->display_unit.empty() ? "" : escaped(" (" + (*first)->display_unit + ")"));
     }
     out += "</tr></thead><tbody>\n";
     for (const std::string& group : groups) {
-      out += fmt::format("<tr><td>{}</td>", escaped(words(group)));
+      out += fmt::format("<tr><td>{}</td>", escaped(spoken(group)));
       for (const std::string& name : names) {
         const auto at = std::find_if(vital.begin(), vital.end(),
                                      [&](const Known* k) { return k->name == name && k->group == group; });

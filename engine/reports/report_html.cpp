@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/spoken.h"
 #include "engine/live/session_mode.h"
 #include "engine/reports/hints_report.h"
 #include "engine/reports/metrics_report.h"
@@ -152,11 +153,10 @@ std::string stage_table(const RunRecorder& recorder) {
   std::string out =
       "<table><thead><tr><th>Stage</th><th class=\"n\">median (ms)</th><th class=\"n\">95th percentile (ms)</th><th "
       "class=\"n\">largest (ms)</th></tr></thead><tbody>\n";
-  const auto line = [&](std::string name, const std::vector<double>& v) {
-    std::replace(name.begin(), name.end(), '_', ' ');
+  const auto line = [&](const std::string& name, const std::vector<double>& v) {
     out += fmt::format(
-        "<tr><td>{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.3f}</td></tr>\n", name,
-        percentile(v, 0.5), percentile(v, 0.95), largest(v));
+        "<tr><td>{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.3f}</td></tr>\n",
+        spoken(name), percentile(v, 0.5), percentile(v, 0.95), largest(v));
   };
   for (std::size_t k = 0; k < stage_count; ++k)
     line(stage_names()[k], column(recorder, [k](const S& s) { return s.stage_ms[k]; }));
@@ -185,9 +185,7 @@ std::string channel_plots(const RunRecorder& recorder, const RunSeries& s, const
           {c.group.empty() ? c.name : c.group, colours[curves.size() % std::size(colours)], std::move(y), ""});
     }
     if (curves.empty()) continue;
-    std::string name = all[i].component + ": " + all[i].name;
-    std::replace(name.begin(), name.end(), '_', ' ');
-    out += svg({name, "time (s)",
+    out += svg({spoken(all[i].component + ": " + all[i].name), "time (s)",
                 all[i].display_unit.empty() ? all[i].name : all[i].name + " (" + all[i].display_unit + ")", s.time_s,
                 curves, marks, false});
   }
@@ -254,9 +252,7 @@ std::string technical_plots(const RunRecorder& recorder) {
   static constexpr const char* colours[] = {"#1f6fb2", "#15803d", "#d4a017", "#dc2626", "#9333ea", "#9ca3af"};
   std::vector<PlotCurve> curves;
   for (std::size_t k = 0; k < stage_count; ++k) {
-    std::string name = stage_names()[k];
-    std::replace(name.begin(), name.end(), '_', ' ');
-    curves.push_back({name, colours[k], s.stage_ms[k], ""});
+    curves.push_back({spoken(stage_names()[k]), colours[k], s.stage_ms[k], ""});
   }
   curves.push_back({"step", "#111", s.step_ms, ""});
   out += svg({"Stages", "time (s)", "wall time (ms)", s.time_s, curves, {}, false});

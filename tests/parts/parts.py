@@ -13,7 +13,7 @@ import re
 import subprocess
 import sys
 
-PARTS = 8
+PARTS = 12
 BROWSER = "browser:"
 
 

@@ -22,11 +22,11 @@ struct Limb {
 
 /// A dome on a wall: an ellipsoid of revolution on a round neck.
 struct Dome {
-  Vec3 root, axis;           ///< where the axis leaves the vessels' surface; unit, outward
-  double neck_diameter = 3;  ///< of the neck before the fillet
-  double radius = 3;         ///< across the axis
-  double half_height = 3;    ///< along it
-  double lift = 0.4;         ///< the ellipsoid's lowest point over the root, in half heights; negative: sunk in
+  Vec3 root = Vec3::Zero(), axis = Vec3::UnitZ();  ///< where the axis leaves the vessels' surface; unit, outward
+  double neck_diameter = 3;                        ///< of the neck before the fillet
+  double radius = 3;                               ///< across the axis
+  double half_height = 3;                          ///< along it
+  double lift = 0.4;  ///< the ellipsoid's lowest point over the root, in half heights; negative: sunk in
 };
 
 struct GeneratedArtery {

@@ -79,5 +79,49 @@ TEST(NeckProposals, AGivenNeckIsTakenAsSure) {
   EXPECT_EQ(neck_confidence(v.proposals), 1);
 }
 
+/// A branch that leaves the dome itself. Every plane that parts the dome leaves the branch's opening beyond it.
+TEST(NeckProposals, TheShortestLineIsTheNeckWhereABranchLeavesTheDome) {
+  test::Dome dome;
+  dome.neck_diameter = 3.4, dome.radius = 3.2, dome.half_height = 3.2, dome.lift = 0.2;
+  test::GeneratedArtery a = test::on_fork("branch_of_the_dome", {}, dome, 0, 0);
+  const Vec3 from = a.dome_centre() + Vec3(0, 1.4, 1.8);
+  a.limbs.push_back(
+      {"of_the_dome", smooth_curve({from, from + Vec3(0, 3, 4), from + Vec3(1, 5, 8)}, 0.5, 0.5, 0.4), false, true});
+  const Vessel v = vessel_of(a.surface(), {});
+  ASSERT_TRUE(v.neck);
+  ASSERT_FALSE(v.proposals.empty());
+  EXPECT_EQ(v.proposals.front().method, "shortest line");
+  EXPECT_FALSE(v.proposals.front().planar);
+  EXPECT_LT(neck_confidence(v.proposals), 0.85);
+  for (std::size_t t = 0; t < v.wall.patch.size(); ++t) {
+    if (v.wall.patch[t] < 0) continue;
+    for (const int i : v.wall.mesh.triangles[t]) EXPECT_EQ(v.regions[std::size_t(v.region[std::size_t(i)])], "ends");
+  }
+  EXPECT_GT(counted(v, a).sac, 25);
+}
+
+/// Both branches are as thin as two cells of the grid in which the paths are found.
+TEST(GridCentrelines, RunAlongTheMiddleOfThinVessels) {
+  test::Dome dome;
+  dome.neck_diameter = 2.6, dome.radius = 2.4, dome.half_height = 2.6, dome.lift = 0.3;
+  const test::GeneratedArtery a = test::on_fork("thin", {1.2, 0.45, 0.45, 75, 70, 18}, dome, 0, 0);
+  const Vessel v = vessel_of(a.surface(), {});
+  int points = 0;
+  for (const NamedCurve& c : v.centrelines) {
+    if (!c.name.starts_with("branch")) continue;
+    const Curve& curve = c.curve;
+    for (std::size_t k = 0; k + 1 < curve.size(); ++k) {  // the last one is the cap's middle
+      const Vec3& p = curve.points[k];
+      if ((p - a.dome.root).norm() < 4) continue;
+      ++points;
+      const double off_wall = -a.of_vessels(p);  // the true radius less what lies between the point and the true middle
+      EXPECT_GT(off_wall, 0.7 * 0.42) << p.transpose();
+      EXPECT_GT(curve.radius[k], 0.6 * 0.42);  // of the wall's triangles
+      EXPECT_LT(curve.radius[k], 1.1 * 0.45);
+    }
+  }
+  EXPECT_GT(points, 20);
+}
+
 }  // namespace
 }  // namespace insula::artery

@@ -66,12 +66,49 @@ struct InnerGrid {
   }
 };
 
-/// A path through cell centres becomes a smooth curve; its ends stay.
-Curve smoothed(std::vector<Vec3> p, const WallPoints& wall, double step) {
-  for (int round = 0; round < 30; ++round) {
+void smooth(std::vector<Vec3>& p, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
     const std::vector<Vec3> old = p;
     for (std::size_t i = 1; i + 1 < p.size(); ++i) p[i] = 0.25 * old[i - 1] + 0.5 * old[i] + 0.25 * old[i + 1];
   }
+}
+
+/// The point, moved across the tangent away from the nearest wall until it is `wanted` from it, or no farther.
+Vec3 off_the_wall(Vec3 p, const Vec3& tangent, double wanted, const WallPoints& wall) {
+  double d = wall.distance(p);
+  for (double step = 0.5 * wanted; step > 0.02 * wanted && d < wanted;) {
+    Vec3 away = p - wall.nearest(p);
+    away -= away.dot(tangent) * tangent;
+    if (!(away.norm() > 1e-9)) break;
+    const Vec3 to = p + std::min(step, wanted - d) * away.normalized();
+    if (const double there = wall.distance(to); there > d) p = to, d = there;
+    else step *= 0.5;
+  }
+  return p;
+}
+
+/// Moves points that lie nearer to the wall than most of the path towards the middle. A thin vessel is only a few cells
+/// wide, so a path through the cells runs along its wall in places. Ends stay.
+void centre(std::vector<Vec3>& p, const WallPoints& wall) {
+  for (int round = 0; round < 3 && p.size() > 2; ++round) {  // the usual depth grows as the points move
+    std::vector<double> depth;
+    for (const Vec3& x : p) depth.push_back(wall.distance(x));
+    const auto middle = depth.begin() + std::ptrdiff_t(depth.size() / 2);
+    std::nth_element(depth.begin(), middle, depth.end());
+    const double usual = 1.1 * *middle;
+    const std::vector<Vec3> old = p;
+    for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+      const Vec3 along = old[i + 1] - old[i - 1];
+      if (along.norm() > 0) p[i] = off_the_wall(old[i], along.normalized(), usual, wall);
+    }
+    smooth(p, 4);
+  }
+}
+
+/// A path through cell centres becomes a smooth curve; its ends stay.
+Curve smoothed(std::vector<Vec3> p, const WallPoints& wall, double step) {
+  smooth(p, 30);
+  centre(p, wall);
   Curve out{p, std::vector<double>(p.size(), 0.0)};
   out = resampled(out, step);
   for (std::size_t i = 0; i < out.size(); ++i) out.radius[i] = std::max(wall.distance(out.points[i]), 1e-3);
@@ -156,10 +193,11 @@ Paths paths_to_all_caps(const Surface& surface, const WallPoints& wall) {
   }
   if (found->lost >= 0) {
     const CapPlane& cap = surface.caps[std::size_t(found->lost)];
-    throw InputError(fmt::format(
+    const std::string why = fmt::format(
         "no way leads from the inlet to {} at ({:.1f}, {:.1f}, {:.1f}), {:.2f} mm across: the vessel is too thin on "
         "the way for a grid of {:.2g} mm. Cut it off before it gets so thin (--cut), or leave out what lies far away",
-        cap.name, cap.centre.x(), cap.centre.y(), cap.centre.z(), 2 * cap.radius, found->grid.step));
+        cap.name, cap.centre.x(), cap.centre.y(), cap.centre.z(), 2 * cap.radius, found->grid.step);
+    throw LostOutlet(why, cap.centre);
   }
   return std::move(*found);
 }

@@ -104,7 +104,7 @@ Vessel vessel_of(Surface original, const ImportOptions& options) {
   v.centrelines = grid_centrelines(v.wall, WallPoints(v.wall));
   const std::vector<double> radii = name_vessels(v);
   if (options.neck) sac_beyond(v, *options.neck);
-  else if (v.proposals = propose_necks(v, radii); !v.proposals.empty()) sac_beyond(v, v.proposals.front().plane);
+  else v.proposals = propose_necks(v, radii);
   const std::vector<VertexKind> kinds = vertex_kinds(v.wall);
   v.regions.push_back("ends");
   for (std::size_t i = 0; i < kinds.size(); ++i)

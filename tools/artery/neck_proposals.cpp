@@ -51,28 +51,43 @@ NeckProposal of_line(const std::string& method, const Vessel& bare, const Vessel
   return out;
 }
 
+/// Whether the other two methods find one dome, and the narrowest section parts another: the base of a branch.
+bool contradicted(const TriMesh& m, const std::vector<char>& narrowest, const std::vector<char>& cut,
+                  const std::vector<char>& tubes) {
+  constexpr double same = 0.7, other = 0.3;
+  return dice(m, cut, tubes) > same && dice(m, narrowest, cut) < other && dice(m, narrowest, tubes) < other;
+}
+
 }  // namespace
 
-std::vector<NeckProposal> propose_necks(const Vessel& bare, const std::vector<double>& radii) {
-  const TriMesh& m = bare.wall.mesh;
+std::vector<NeckProposal> propose_necks(Vessel& v, const std::vector<double>& radii) {
+  const TriMesh& m = v.wall.mesh;
+  const Vessel bare = v;
   Vessel cut = bare;
   for (const double bulge : bulges)
     if (!cut.neck) find_sac(cut, sac_by_cut(bare.wall, radii, bulge));
   if (!cut.neck) return {};
-  Vessel narrowest = bare;
-  sac_beyond(narrowest, narrowest_neck(cut, radii));
-  std::vector<NeckProposal> out{
-      {"narrowest section", {narrowest.neck->centre, narrowest.neck->normal}, narrowest.neck->diameter},
-      of_line("shortest line", bare, cut)};
-  const std::vector<char> chosen = dome_of(narrowest);
-  out.back().agreement = dice(m, chosen, dome_of(cut));
   std::vector<char> outside(m.vertices.size());
   for (const int i : largest_bulge(m, radii, tube)) outside[std::size_t(i)] = 1;
   Vessel tubes = bare;
   find_sac(tubes, outside);
+
+  Vessel narrowest = bare;
+  if (const std::optional<NeckPlane> plane = narrowest_neck(cut, radii)) sac_beyond(narrowest, *plane);
+  const std::vector<char> of_cut = dome_of(cut), of_tubes = dome_of(tubes);
+  std::vector<NeckProposal> out;
+  if (narrowest.neck && !contradicted(m, dome_of(narrowest), of_cut, of_tubes)) {
+    v = narrowest;
+    out.push_back({"narrowest section", {v.neck->centre, v.neck->normal}, v.neck->diameter});
+  } else {
+    v = cut;
+  }
+  const std::vector<char> chosen = dome_of(v);
+  out.push_back(of_line("shortest line", bare, cut));
+  out.back().agreement = dice(m, chosen, of_cut);
   if (tubes.neck) {
     out.push_back(of_line("vessels' tubes", bare, tubes));
-    out.back().agreement = dice(m, chosen, dome_of(tubes));
+    out.back().agreement = dice(m, chosen, of_tubes);
   }
   return out;
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "import_parts.h"
+#include "neck_planes.h"
 
 namespace insula::artery {
 namespace {
@@ -12,16 +13,6 @@ namespace {
 constexpr double widest_half_band = 0.45;  // mm, of the neck, to either side of its plane
 constexpr double band_of_height = 0.3;     // of a low dome's height, the same
 constexpr double most_of_bleb = 0.3;       // of the sac's vertices that the weak spot may take
-constexpr std::size_t min_sac_vertices = 12;
-constexpr double most_of_vessels = 0.02;  // of a dome's vertices, such ones
-
-double height(const Vec3& p, const NeckPlane& plane) { return (p - plane.centre).dot(plane.normal); }
-
-/// The closed line in which a plane cuts the border of a connected set of vertices: its centre and area.
-struct Loop {
-  Vec3 centre = Vec3::Zero();
-  double area = 0;
-};
 
 /// The vertices beyond a plane, in connected pieces.
 std::vector<std::vector<int>> pieces_beyond(const TriMesh& m, const std::vector<std::vector<int>>& next,
@@ -57,7 +48,8 @@ Loop loop_of(const TriMesh& m, const std::vector<std::vector<int>>& next, const 
   return out;
 }
 
-/// The piece beyond the plane that the loop nearest to its centre belongs to.
+}  // namespace
+
 std::vector<int> dome_beyond(const TriMesh& m, const std::vector<std::vector<int>>& next, const NeckPlane& plane,
                              Loop& loop) {
   std::vector<int> best;
@@ -79,6 +71,8 @@ bool holds_a_cap(const Surface& s, const std::vector<int>& set) {
         if (in[std::size_t(i)]) return true;
   return false;
 }
+
+namespace {
 
 /// The line from just before the neck to the dome; its radius is that of equal sections. It does not begin in the
 /// vessel: sections there are wider than any of the sac, and flow is judged by those up to the widest.
@@ -174,66 +168,6 @@ void sac_beyond(Vessel& v, const NeckPlane& given) {
         v.region[std::size_t(n)] = neck_region, ring.push_back(n);
   v.neck = Neck{loop.centre, plane.normal, 2 * std::sqrt(loop.area / std::numbers::pi)};
   add_sac_line(v, dome);
-}
-
-NeckPlane narrowest_neck(const Vessel& v, const std::vector<double>& radii) {
-  const TriMesh& m = v.wall.mesh;
-  const auto next = neighbours(m);
-  const NeckPlane first{v.neck->centre, v.neck->normal};
-  double top = 0;
-  for (const Vec3& p : v.centrelines.back().curve.points) top = std::max(top, height(p, first));
-  const auto cost = [&](const NeckPlane& plane, double up) {
-    Loop loop;
-    const std::vector<int> dome = dome_beyond(m, next, plane, loop);
-    if (dome.size() < min_sac_vertices || holds_a_cap(v.wall, dome)) return 1e300;
-    const auto of_vessels =
-        std::count_if(dome.begin(), dome.end(), [&](int i) { return radii[std::size_t(i)] < of_a_vessel; });
-    if (double(of_vessels) > most_of_vessels * double(dome.size())) return 1e300;
-    return loop.area * (1 + 0.5 * std::abs(up) / top);  // every dome is narrower at its top: going there costs
-  };
-  struct State {
-    double up, tilt_a, tilt_b;
-    double cost = 1e300;
-  };
-  const Vec3 u = first.normal.unitOrthogonal(), w = first.normal.cross(u);
-  const auto plane_of = [&](const State& s) {
-    const Vec3 n = (first.normal + std::tan(s.tilt_a) * u + std::tan(s.tilt_b) * w).normalized();
-    return NeckPlane{first.centre + s.up * first.normal, n};
-  };
-  const auto judged = [&](State s) {
-    s.cost = cost(plane_of(s), s.up);
-    return s;
-  };
-  std::vector<State> starts;
-  for (double up = -0.15; up < 0.5; up += 0.05) {  // the plane of what bulges may still touch a branch
-    State best;
-    for (double a = -0.4; a < 0.5; a += 0.2)
-      for (double b = -0.4; b < 0.5; b += 0.2)
-        if (const State s = judged({up * top, a, b}); s.cost < best.cost) best = s;
-    if (best.cost < 1e299) starts.push_back(best);
-  }
-  if (starts.empty())
-    throw std::runtime_error(
-        "no plane near the border of what bulges parts a dome from the vessel; give the neck's plane");
-  const auto cheaper = [](const State& x, const State& y) { return x.cost < y.cost; };
-  std::sort(starts.begin(), starts.end(), cheaper);
-  starts.resize(std::min<std::size_t>(starts.size(), 4));
-  for (State& best : starts)
-    for (const double step : {1.0, 0.5, 0.25})  // pattern search
-      for (bool moved = true; moved;) {
-        moved = false;
-        for (const State d : {State{0.1 * top * step, 0, 0},
-                              {-0.1 * top * step, 0, 0},
-                              {0, 0.12 * step, 0},
-                              {0, -0.12 * step, 0},
-                              {0, 0, 0.12 * step},
-                              {0, 0, -0.12 * step}}) {
-          const State s{best.up + d.up, best.tilt_a + d.tilt_a, best.tilt_b + d.tilt_b};
-          if (s.up < -0.15 * top || s.up > 0.45 * top || std::hypot(s.tilt_a, s.tilt_b) > 0.6) continue;
-          if (const State to = judged(s); cheaper(to, best)) best = to, moved = true;
-        }
-      }
-  return plane_of(*std::min_element(starts.begin(), starts.end(), cheaper));
 }
 
 void add_bleb(Vessel& v, double radius) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "case_table.h"
+#include "core/base/input_error.h"
 #include "curve.h"
 #include "surface.h"
 
@@ -57,7 +58,12 @@ struct ImportOptions {
   std::optional<NeckPlane> neck;       ///< in place of the one that is found
   Vec3 inlet = Vec3::Constant(1e300);  ///< the cap nearest to this point; by default the widest
 };
-/// The vessel of a closed surface whose openings are flat caps.
+/// A cap to which no path leads from the inlet: the vessel is too thin on the way.
+struct LostOutlet : InputError {
+  LostOutlet(const std::string& message, const Vec3& cap) : InputError(message), centre(cap) {}
+  Vec3 centre;
+};
+/// The vessel of a closed surface whose openings are flat caps. Throws LostOutlet, std::runtime_error.
 Vessel import_surface(const TriMesh& surface, const ImportOptions& options);
 /// The same where the caps are known: a closed surface whose triangles are marked, two caps or more.
 Vessel vessel_of(Surface surface, const ImportOptions& options);

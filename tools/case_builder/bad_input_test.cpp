@@ -180,7 +180,7 @@ const std::vector<Given> all = {
      "--keep-largest"},
     {"sheet_without_thickness", "a.obj", [] { return test::obj_text(sheet()); }, "encloses next to nothing"},
     {"one_triangle", "a.obj", [] { return std::string("v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n"); },
-     "neither a round, flat end"},
+     "encloses next to nothing"},
     {"closed_ball", "a.stl", [] { return stl(ball(4, false)); }, "has 0 openings"},
     {"ball_with_one_hole", "a.stl", [] { return stl(ball(4, true)); }, "has 1 opening"},
     {"closed_ring", "a.stl", [] { return stl(ring()); }, "parted at their thinnest place", true},
@@ -189,7 +189,7 @@ const std::vector<Given> all = {
        return stl(test::without(tube_with_sac(),
                                 [](const Vec3& p) { return p.y() > 0.2 && std::abs(p.x()) < 6 && p.z() < 1.2; }));
      },
-     "neither a round, flat end"},
+     "neither an end of a vessel nor small"},
     {"label_for_a_surface", "a.stl", [] { return stl(tube_with_sac()); }, "is a surface", false, label_1},
     {"plane_beside_the_vessel", "a.stl", [] { return stl(tube_with_sac()); }, "does not meet the vessel", false,
      [](Options& o) {

@@ -4,15 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <numeric>
-#include <queue>
 
 #include "core/base/input_error.h"
+#include "tools/case_builder/level_lines.h"
 #include "tools/case_builder/openings.h"
 
 namespace insula::case_builder {
@@ -20,56 +18,15 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double least_prominence = 0.03;   // of the longest distance: what sticks out less is no end
-constexpr int levels = 160;                 // of the distance from a tip, up to the farthest point
-constexpr double small_loop = 0.3;          // of the longest loop of a level: less is a bump
-constexpr int sure_fork = 4;                // levels in a row with two long loops
 constexpr double same_calibre = 1.3;        // largest over least diameter along a piece of one tube
 constexpr double full_calibre = 0.93;       // of the diameter farther in, where an end is cut
 constexpr std::size_t hidden_sections = 3;  // in a row, within a tube
 constexpr double vessel_length = 1.4;       // diameters of one calibre: a short vessel, or a sac
 constexpr double sure_length = 2;           // diameters of one calibre, which no sac has
+constexpr double torn_length = 0.7;         // the same of a known end
 constexpr double farthest = 8;              // diameters of the tube that are looked at
-
-/// The edges of a surface, with shortest distances along them.
-class Geodesics {
- public:
-  explicit Geodesics(const TriMesh& m) : m_(m), beside_(m.vertices.size()) {
-    for (const auto& t : m.triangles)
-      for (std::size_t k = 0; k < 3; ++k) beside_[std::size_t(t[k])].push_back(t[(k + 1) % 3]);
-  }
-  const std::vector<int>& beside(int v) const { return beside_[std::size_t(v)]; }
-  std::vector<double> from(int start) const {
-    std::vector<double> d(beside_.size(), infinity);
-    std::priority_queue<std::pair<double, int>, std::vector<std::pair<double, int>>, std::greater<>> open;
-    d[std::size_t(start)] = 0, open.emplace(0.0, start);
-    while (!open.empty()) {
-      const auto [near, v] = open.top();
-      open.pop();
-      if (near > d[std::size_t(v)]) continue;
-      for (const int w : beside(v)) {
-        const double next = near + (m_.vertices[std::size_t(w)] - m_.vertices[std::size_t(v)]).norm();
-        if (next < d[std::size_t(w)]) d[std::size_t(w)] = next, open.emplace(next, w);
-      }
-    }
-    return d;
-  }
-
- private:
-  const TriMesh& m_;
-  std::vector<std::vector<int>> beside_;
-};
-
-int farthest_vertex(const std::vector<double>& d) {
-  int out = 0;
-  for (std::size_t i = 0; i < d.size(); ++i)
-    if (std::isfinite(d[i]) && d[i] > d[std::size_t(out)]) out = int(i);
-  return out;
-}
-
-int root_of(std::vector<int>& parent, int v) {
-  while (parent[std::size_t(v)] != v) v = parent[std::size_t(v)] = parent[std::size_t(parent[std::size_t(v)])];
-  return v;
-}
+constexpr double dome_width = 1.3;          // diameters of the tube behind: what is so wide nearer to the tip is a dome
+constexpr double dome_length = 0.5;         // the same, along the line
 
 /// The maxima of `d` that rise `least` or more over the pass to a higher one (persistence of superlevel sets).
 std::vector<int> prominent_maxima(const Geodesics& g, const std::vector<double>& d, double least) {
@@ -94,52 +51,6 @@ std::vector<int> prominent_maxima(const Geodesics& g, const std::vector<double>&
   return out;
 }
 
-/// A closed line on the surface.
-struct Loop {
-  Vec3 middle = Vec3::Zero();
-  double length = 0, diameter = 0;  ///< mm; diameter of the circle of equal area
-};
-
-/// The loops on which a function of the vertices has a value.
-std::vector<Loop> loops_at(const TriMesh& m, const std::vector<double>& f, double value) {
-  std::map<std::pair<int, int>, int> crossed;  // edges, numbered
-  std::vector<Vec3> point;
-  std::vector<int> parent;
-  std::vector<std::array<int, 2>> segments;  // with higher values to their left
-  for (const auto& t : m.triangles) {
-    int in = -1, out = -1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int from = t[k], to = t[(k + 1) % 3], a = std::min(from, to), b = std::max(from, to);
-      const double fa = f[std::size_t(a)] - value, fb = f[std::size_t(b)] - value;
-      if ((fa > 0) == (fb > 0)) continue;
-      const auto [at, fresh] = crossed.emplace(std::pair(a, b), int(point.size()));
-      if (fresh) {
-        const double share = fa / (fa - fb);
-        point.push_back((1 - share) * m.vertices[std::size_t(a)] + share * m.vertices[std::size_t(b)]);
-        parent.push_back(at->second);
-      }
-      (f[std::size_t(to)] > value ? in : out) = at->second;
-    }
-    if (in < 0 || out < 0) continue;
-    segments.push_back({in, out});
-    parent[std::size_t(root_of(parent, in))] = root_of(parent, out);
-  }
-  std::map<int, std::pair<Loop, Vec3>> loops;  // and twice the area
-  for (const auto& [i, j] : segments) {
-    const Vec3 &a = point[std::size_t(i)], &b = point[std::size_t(j)];
-    auto& [loop, area] = loops.try_emplace(root_of(parent, i), Loop(), Vec3::Zero()).first->second;
-    loop.length += (b - a).norm(), loop.middle += (b - a).norm() * 0.5 * (a + b), area += a.cross(b);
-  }
-  std::vector<Loop> out;
-  for (auto& [root, of] : loops) {
-    if (!(of.first.length > 0)) continue;
-    of.first.middle /= of.first.length;
-    of.first.diameter = 2 * std::sqrt(0.5 * of.second.norm() / std::numbers::pi);
-    out.push_back(of.first);
-  }
-  return out;
-}
-
 /// The plane section of the vessel whose middle is nearest to a point, of those with a diameter of `least` or more.
 Loop section(const TriMesh& m, const Vec3& at, const Vec3& normal, double least) {
   std::vector<double> height;
@@ -148,22 +59,6 @@ Loop section(const TriMesh& m, const Vec3& at, const Vec3& normal, double least)
   double away = infinity;
   for (const Loop& loop : loops_at(m, height, 0))
     if (const double d = (loop.middle - at).norm(); loop.diameter >= least && d < away) out = loop, away = d;
-  return out;
-}
-
-/// The lines of equal distance from a tip, inward up to where the surface divides.
-std::vector<Loop> lines_of_distance(const TriMesh& m, const std::vector<double>& d) {
-  const double step = d[std::size_t(farthest_vertex(d))] / levels;
-  std::vector<Loop> out;
-  int divided = 0;  // levels in a row
-  for (int k = 1; k < levels && divided < sure_fork; ++k) {
-    std::vector<Loop> all = loops_at(m, d, k * step);
-    double longest = 0;
-    for (const Loop& loop : all) longest = std::max(longest, loop.length);
-    std::erase_if(all, [&](const Loop& loop) { return loop.length < small_loop * longest; });  // around bumps
-    divided = all.size() > 1 ? divided + 1 : 0;
-    if (all.size() == 1) out.push_back(all.front());
-  }
   return out;
 }
 
@@ -210,6 +105,7 @@ struct Tube {
   Vec3 end = Vec3::Zero(), outward = Vec3::UnitZ();  ///< where it is cut
   double diameter = 0;                               ///< one diameter farther in, mm
   double length = 0;                                 ///< in diameters
+  bool torn = false;                                 ///< at a torn border
 };
 
 /// Turns the plane in which a tube is cut to lie across it, along the chord between two sections, and moves it inward
@@ -232,11 +128,21 @@ void straighten(const TriMesh& m, Tube& tube) {
   }
 }
 
-/// The first tube of a vessel's length on the way from a tip inward, or else the longest.
+/// Whether a dome lies before a section, between the tip and a tube of this diameter: a sac on a stalk.
+bool dome_before(const Sections& s, std::size_t first, double diameter) {
+  double wide = 0;
+  for (std::size_t k = 1; k < first; ++k)
+    if (s.loop[k].diameter > dome_width * diameter) wide += s.arc[k] - s.arc[k - 1];
+  return wide > dome_length * diameter;
+}
+
+/// The first tube of a vessel's length on the way from a tip inward, or else the longest. What a dome lies before is
+/// none: its length is 0.
 Tube tube_at(const TriMesh& m, const std::vector<Loop>& lines) {
   const Sections s = sections_along(m, sections_along(m, lines).loop);
   Tube best;
-  double begin = 0;  // of the best one, mm from the tip
+  std::size_t begins = 0;  // the best one
+  double begin = 0;        // the same, mm from the tip
   for (std::size_t first = 0; first < s.loop.size(); ++first) {
     std::vector<double> diameters;
     double low = infinity, high = 0;
@@ -265,8 +171,9 @@ Tube tube_at(const TriMesh& m, const std::vector<Loop>& lines) {
     const Vec3 along = s.loop[cut].middle - s.loop[inner].middle;
     best = {s.loop[cut].middle, along.norm() > 0 ? Vec3(along.normalized()) : s.outward[cut], s.loop[inner].diameter,
             length};
-    begin = s.arc[first];
+    begins = first, begin = s.arc[first];
   }
+  if (dome_before(s, begins, best.diameter)) return {};
   straighten(m, best);
   return best;
 }
@@ -285,31 +192,39 @@ bool on_cap(const artery::Surface& s, const Vec3& p) {
 
 }  // namespace
 
-void cut_blind_ends(artery::Surface& s, std::vector<Note>& notes) {
+void cut_blind_ends(artery::Surface& s, const std::vector<TornBorder>& torn, std::vector<Note>& notes) {
   const Geodesics geodesics(s.mesh);
   const std::vector<double> d = geodesics.from(farthest_vertex(geodesics.from(s.mesh.triangles.front()[0])));
   std::vector<int> tips = prominent_maxima(geodesics, d, least_prominence * d[std::size_t(farthest_vertex(d))]);
   tips.push_back(int(std::min_element(d.begin(), d.end()) - d.begin()));
   std::vector<Tube> ends;
-  for (const int tip : tips)
-    if (!on_cap(s, s.mesh.vertices[std::size_t(tip)]))
-      ends.push_back(tube_at(s.mesh, lines_of_distance(s.mesh, geodesics.from(tip))));
+  for (const int tip : tips) {
+    const Vec3& p = s.mesh.vertices[std::size_t(tip)];
+    const bool known = std::any_of(torn.begin(), torn.end(), [&](const TornBorder& b) {
+      return (b.centre - p).norm() < b.perimeter / std::numbers::pi;
+    });
+    if (!known && !on_cap(s, p)) ends.push_back(tube_at(s.mesh, lines_of_distance(s.mesh, geodesics.from(tip))));
+  }
   std::stable_sort(ends.begin(), ends.end(), [](const Tube& a, const Tube& b) { return a.length < b.length; });
   // The one that is least like a vessel is the sac, unless the sac is so low that it is no end at all.
-  for (std::size_t k = 0; k < ends.size(); ++k) {
-    const Tube& e = ends[k];
-    if (e.length < (k == 0 ? sure_length : vessel_length)) continue;
+  if (!ends.empty() && ends.front().length < sure_length) ends.erase(ends.begin());
+  std::erase_if(ends, [](const Tube& e) { return e.length < vessel_length; });
+  for (const TornBorder& b : torn) {
+    const int tip = nearest_vertex(s.mesh, b.centre);
+    Tube tube = tube_at(s.mesh, lines_of_distance(s.mesh, geodesics.from(tip)));
+    tube.torn = true;
+    if (tube.length >= torn_length) ends.push_back(tube);
+  }
+  for (const Tube& e : ends) {
     try {
       cut_off(s, e.end, e.outward, fmt::format("end_{}", s.caps.size()));
     } catch (const InputError&) {
       continue;  // no single tube there
     }
-    notes.push_back(
-        {Note::Kind::repair,
-         fmt::format("The end at {} was closed and not flat. It was cut straight where the vessel is {:.2f} mm "
-                     "wide.",
-                     place(e.end), e.diameter),
-         "Where it should end farther in, cut it there (--cut)."});
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("The end at {} was {}. It was cut straight where the vessel is {:.2f} mm wide.",
+                                 place(e.end), e.torn ? "torn" : "closed and not flat", e.diameter),
+                     "Where it should end farther in, cut it there (--cut)."});
   }
 }
 

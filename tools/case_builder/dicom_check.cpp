@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "core/model/formats/dicom_mark.h"
 #include "core/model/formats/file_bytes.h"
-#include "engine/sharing/dicom_mark.h"
 
 namespace insula::case_builder {
 namespace {

@@ -69,15 +69,8 @@ TriMesh read_surface_mm(const fs::path& input, const Options& o, std::vector<Not
   return m;
 }
 
-void check_inside(artery::Surface& s, const std::string& what, std::vector<Note>& notes) {
-  double volume = signed_volume(s.mesh);
-  if (volume < 0) {
-    turn_inside_out(s.mesh);
-    for (artery::CapPlane& cap : s.caps) cap.normal = -cap.normal;
-    volume = -volume;
-    notes.push_back({Note::Kind::repair, "The surface was inside out; it was turned.", ""});
-  }
-  const double thick = 2 * volume / area(s.mesh);  // the radius, of a tube
+void check_inside(const artery::Surface& s, const std::string& what) {
+  const double thick = 2 * signed_volume(s.mesh) / area(s.mesh);  // the radius, of a tube
   if (thick < 0.01 * extent_of(s.mesh))
     throw InputError(
         fmt::format("{}: encloses next to nothing (it is {:.3g} mm thick for {:.3g} mm of length): a sheet without "
@@ -174,16 +167,18 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
                      fmt::format("The surface was made anew from a grid of {:.3g} mm, as asked for.", *o.rebuild), ""});
   }
   tidy_or_rebuild(m, what, o, notes);
-  artery::Surface s = closed_surface(m, notes);
-  check_inside(s, what, notes);
+  ClosedSurface closed = closed_surface(m, notes);
+  artery::Surface& s = closed.surface;
+  check_inside(s, what);
   if (s.mesh.triangles.size() > many_triangles)
     make_anew(s, fmt::format("The surface had {} triangles, far more than its shape needs", s.mesh.triangles.size()),
               what, o, notes);
   make_cuts(s, o);
   out.facts["openings_found_by"] = add_flat_ends(s);
   mend_shape(s, what, o, notes);
-  if (const std::size_t before = s.caps.size(); cut_blind_ends(s, notes), before == 0 && !s.caps.empty())
+  if (const std::size_t before = s.caps.size(); cut_blind_ends(s, closed.torn, notes), before == 0 && !s.caps.empty())
     out.facts["openings_found_by"] = "ends of one calibre of a closed surface";
+  check_torn(s, closed.torn);
   if (s.caps.size() < 2 && needed == Openings::two)
     throw InputError(
         fmt::format("{}: has {} opening{}; a vessel needs an inlet and an outlet. A closed end is found where the "

@@ -71,9 +71,41 @@ void fill(artery::Surface& s, const Border& b, int patch) {
   }
 }
 
+/// Six times the volume that a surface and fans over its borders enclose; negative: it is inside out.
+double six_volumes(const TriMesh& m, const std::vector<std::vector<int>>& loops) {
+  if (m.vertices.empty()) return 0;
+  const auto at = [&](int v) -> Vec3 { return m.vertices[std::size_t(v)] - m.vertices[0]; };  // as signed_volume()
+  double sum = 6 * signed_volume(m);
+  for (const std::vector<int>& loop : loops) {
+    const Vec3 hub = at(loop[0]);
+    for (std::size_t k = 1; k + 1 < loop.size(); ++k) sum += hub.dot(at(loop[k]).cross(at(loop[k + 1])));
+  }
+  return sum;
+}
+
+/// Whether a border that is an end is cut straight behind its deepest notch.
+bool cut_straight(artery::Surface& s, const Border& b, std::vector<Note>& notes) {
+  const double back = b.deviation + 0.05 * b.radius;
+  try {
+    cut_off(s, b.centre - back * b.normal, b.normal, fmt::format("opening_{}", s.caps.size()));
+  } catch (const InputError&) {
+    return false;  // no single tube there
+  }
+  notes.push_back(
+      {Note::Kind::repair,
+       fmt::format("The end at {} was not flat: it was cut straight, {:.2f} mm were lost.", place(b.centre), back),
+       ""});
+  return true;
+}
+
 }  // namespace
 
-artery::Surface closed_surface(const TriMesh& mesh, std::vector<Note>& notes) {
+ClosedSurface closed_surface(const TriMesh& given, std::vector<Note>& notes) {
+  TriMesh mesh = given;
+  if (six_volumes(mesh, border_loops(mesh)) < 0) {
+    turn_inside_out(mesh);
+    notes.push_back({Note::Kind::repair, "The surface was inside out; it was turned.", ""});
+  }
   std::vector<Border> borders;
   double widest = 0;
   for (auto& loop : border_loops(mesh)) {
@@ -84,38 +116,24 @@ artery::Surface closed_surface(const TriMesh& mesh, std::vector<Note>& notes) {
   }
   std::stable_sort(borders.begin(), borders.end(),
                    [](const Border& a, const Border& b) { return a.radius > b.radius; });
-  artery::Surface s{mesh, std::vector<int>(mesh.triangles.size(), -1), {}};
+  ClosedSurface out{{mesh, std::vector<int>(mesh.triangles.size(), -1), {}}, {}};
+  artery::Surface& s = out.surface;
   std::vector<Border> cut;
   int filled = 0;
   for (const Border& b : borders) {
-    if (b.end && b.radius > small_hole * widest) {
-      if (b.deviation < 0.02 * b.radius) {
-        fill(s, b, int(s.caps.size()));
-        s.caps.push_back({fmt::format("opening_{}", s.caps.size()), b.centre, b.normal, b.radius});
-      } else {
-        fill(s, b, -1);  // not flat: closed, then cut where it is
-        cut.push_back(b);
-      }
-    } else if (std::max(b.radius, b.perimeter / 6) < small_hole * std::max(widest, 1e-9)) {
-      fill(s, b, -1);
-      ++filled;
-    } else {
-      throw InputError(
-          fmt::format("the surface has a hole of {:.1f} mm around at {} that is neither a round, flat end of a vessel "
-                      "nor small: close it in the program that "
-                      "made the surface, cut the vessel straight before it, or make the surface anew from a grid with "
-                      "--rebuild \"0.2 mm\" after closing it",
-                      b.perimeter, place(b.centre)));
+    const bool small = std::max(b.radius, b.perimeter / 6) < small_hole * std::max(widest, 1e-9);
+    if (b.end && b.radius > small_hole * widest && b.deviation < 0.02 * b.radius) {
+      fill(s, b, int(s.caps.size()));
+      s.caps.push_back({fmt::format("opening_{}", s.caps.size()), b.centre, b.normal, b.radius});
+      continue;
     }
+    fill(s, b, -1);
+    if (b.end && b.radius > small_hole * widest) cut.push_back(b);
+    else if (small) ++filled;
+    else out.torn.push_back({b.centre, b.radius, b.perimeter});
   }
-  for (const Border& b : cut) {
-    const double back = b.deviation + 0.05 * b.radius;
-    cut_off(s, b.centre - back * b.normal, b.normal, fmt::format("opening_{}", s.caps.size()));
-    notes.push_back(
-        {Note::Kind::repair,
-         fmt::format("The end at {} was not flat: it was cut straight, {:.2f} mm were lost.", place(b.centre), back),
-         ""});
-  }
+  for (const Border& b : cut)
+    if (!cut_straight(s, b, notes)) out.torn.push_back({b.centre, b.radius, b.perimeter});
   if (!s.caps.empty())
     notes.push_back({Note::Kind::repair,
                      fmt::format("The surface was open at {} ends; they were closed by flat caps.", s.caps.size()),
@@ -126,7 +144,22 @@ artery::Surface closed_surface(const TriMesh& mesh, std::vector<Note>& notes) {
                                  filled == 1 ? "was" : "were"),
                      ""});
   artery::number_by_use(s.mesh);
-  return s;
+  return out;
+}
+
+void check_torn(const artery::Surface& s, const std::vector<TornBorder>& torn) {
+  for (const TornBorder& b : torn) {
+    bool there = false;
+    for (std::size_t t = 0; t < s.patch.size(); ++t)
+      for (const int v : s.mesh.triangles[t])
+        there = there || (s.patch[t] < 0 && (s.mesh.vertices[std::size_t(v)] - b.centre).norm() < 0.3 * b.radius);
+    if (there)
+      throw InputError(
+          fmt::format("the surface has a hole of {:.1f} mm around at {} that is neither an end of a vessel nor small: "
+                      "close it in the program that made the surface, cut the vessel straight before it, or make the "
+                      "surface anew from a grid with --rebuild \"0.2 mm\" after closing it",
+                      b.perimeter, place(b.centre)));
+  }
 }
 
 }  // namespace insula::case_builder

@@ -7,9 +7,22 @@
 
 namespace insula::case_builder {
 
-/// Closes every border of an agreeing, two-sided surface. Round and nearly flat ones become caps; holes much smaller
-/// than those are filled. Throws InputError for a hole that is neither. Every repair is noted.
-artery::Surface closed_surface(const TriMesh& mesh, std::vector<Note>& notes);
+/// A hole that is neither a round, flat end of a vessel nor small: a torn end, or a part of the wall that is missing.
+struct TornBorder {
+  Vec3 centre = Vec3::Zero();
+  double radius = 0, perimeter = 0;  ///< radius: of the circle of equal area
+};
+struct ClosedSurface {
+  artery::Surface surface;
+  std::vector<TornBorder> torn;  ///< filled, and part of the wall
+};
+
+/// Closes every border of an agreeing, two-sided surface, and turns it outward. Round and nearly flat borders become
+/// caps; holes much smaller than those are filled. Every repair is noted.
+ClosedSurface closed_surface(const TriMesh& mesh, std::vector<Note>& notes);
+
+/// Throws InputError for a torn border that is still in the wall, since no end of a vessel was cut off there.
+void check_torn(const artery::Surface& surface, const std::vector<TornBorder>& torn);
 
 /// Cuts a vessel across: of the lines in which the plane meets the surface, the one around the point (or nearest to it)
 /// becomes the rim of a cap; everything beyond it goes, with the caps there. Throws InputError when that line does not

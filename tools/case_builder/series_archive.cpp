@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "core/base/input_error.h"
-#include "engine/sharing/dicom_mark.h"
+#include "core/model/formats/dicom_mark.h"
 #include "engine/sharing/zip_reader.h"
 
 namespace insula::case_builder {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/base/input_error.h"
 #include "tools/case_builder/grid_surface.h"
@@ -78,6 +79,24 @@ void tidy(TriMesh& m, const std::string& what, const Options& o, std::vector<Not
 
 }  // namespace
 
+namespace {
+
+/// Cuts where a cap was. A place in the noise that only looked like a flat end would take much of the vessel with it:
+/// it is left.
+void cut_again(artery::Surface& s, const artery::CapPlane& cap, double spacing) {
+  artery::Surface shorter = s;
+  try {
+    cut_off(shorter, cap.centre - spacing * cap.normal, cap.normal, cap.name);
+  } catch (const InputError&) {
+    return;  // no single tube there
+  }
+  const double of_cap = std::numbers::pi * cap.radius * cap.radius,
+               of_rim = 2 * std::numbers::pi * cap.radius * spacing;
+  if (area(s.mesh) - area(shorter.mesh) < of_cap + 8 * of_rim) s = std::move(shorter);
+}
+
+}  // namespace
+
 double usual_spacing(const TriMesh& m) { return std::clamp(std::sqrt(area(m) / 20000), 0.08, 0.4); }
 
 void make_anew(artery::Surface& s, const std::string& why, const std::string& what, const Options& o,
@@ -87,7 +106,7 @@ void make_anew(artery::Surface& s, const std::string& why, const std::string& wh
   TriMesh m = rebuilt(s.mesh, spacing, notes);
   tidy(m, what, o, notes);
   s = artery::Surface{m, std::vector<int>(m.triangles.size(), -1), {}};
-  for (const artery::CapPlane& cap : caps) cut_off(s, cap.centre - spacing * cap.normal, cap.normal, cap.name);
+  for (const artery::CapPlane& cap : caps) cut_again(s, cap, spacing);
   notes.push_back({Note::Kind::repair,
                    fmt::format("{}; it was made anew from a grid of {:.2g} mm: {} triangles.", why, spacing,
                                s.mesh.triangles.size()),

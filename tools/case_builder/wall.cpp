@@ -11,7 +11,9 @@
 #include "tools/artery/import_parts.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/mirror.h"
+#include "tools/case_builder/openings.h"
 #include "tools/case_builder/region_walls.h"
+#include "tools/case_builder/thin_branch.h"
 #include "tools/case_builder/tidy.h"
 #include "tools/case_builder/trim.h"
 #include "tools/case_builder/wall_patches.h"
@@ -66,6 +68,65 @@ Vessel made(const artery::Surface& s, const artery::ImportOptions& options) {
   }
 }
 
+/// The vessel without the branches that are too thin on their way for a centreline.
+Vessel made_of_wide_ones(artery::Surface& s, const artery::ImportOptions& options, std::vector<Note>& notes) {
+  for (;;) try {
+      return made(s, options);
+    } catch (const artery::LostOutlet& lost) {
+      const auto cap = std::min_element(s.caps.begin(), s.caps.end(), [&](const auto& a, const auto& b) {
+        return (a.centre - lost.centre).norm() < (b.centre - lost.centre).norm();
+      });
+      if (s.caps.size() < 3 || cap == s.caps.begin() || !remove_branch(s, std::size_t(cap - s.caps.begin()))) throw;
+      notes.push_back({Note::Kind::repair,
+                       fmt::format("The branch that ends at {} is too thin on its way for blood to be followed. It was "
+                                   "cut off where it begins.",
+                                   place(lost.centre)),
+                       "If it matters, make it wider in the program that made the surface."});
+    }
+}
+
+/// Whether no two caps overlap, as they do where a vessel is cut through a fork.
+bool caps_apart(const artery::Surface& s) {
+  for (const artery::CapPlane& a : s.caps)
+    for (const artery::CapPlane& b : s.caps)
+      if (&a < &b && (a.centre - b.centre).norm() < a.radius + b.radius) return false;
+  return true;
+}
+
+/// Cut `keep` along the centrelines from the neck, or less where a fork lies there.
+artery::Surface shortened(const artery::Surface& s, const std::vector<artery::NamedCurve>& lines, const Vec3& neck,
+                          double keep, std::vector<Note>& notes) {
+  constexpr double step = 1, least = 0.6;
+  const std::vector<Note> before = notes;
+  for (double shorter = keep; shorter > least * keep; shorter -= step) {
+    artery::Surface out = trimmed(s, lines, neck, shorter, notes);
+    if (caps_apart(out)) return out;
+    notes = before;
+  }
+  return trimmed(s, lines, neck, keep, notes);
+}
+
+/// The shorter vessel, with the neck in the same place, now on finer triangles. A proposed plane that parts no dome
+/// there, as where a branch begins at its edge, is looked for again.
+Vessel made_again(const artery::Surface& s, artery::ImportOptions options, const artery::NeckPlane& neck,
+                  const std::vector<artery::NeckProposal>& proposals) {
+  const auto as_before = [&] {
+    Vessel v = made(s, options);
+    v.proposals = proposals;
+    return v;
+  };
+  if (options.neck) return as_before();
+  if (!proposals.empty() && proposals.front().planar) {
+    options.neck = neck;
+    try {
+      return as_before();
+    } catch (const InputError&) {
+      options.neck.reset();
+    }
+  }
+  return made(s, options);
+}
+
 void check_sound(const Vessel& v) {
   const artery::Quality q = artery::quality(v.wall.mesh);
   if (!q.closed || q.components != 1)
@@ -87,7 +148,7 @@ Vessel wall_of(const artery::Surface& surface, const Options& o, std::vector<Not
   options.vertices = o.vertices;
   options.neck = wanted_neck(o);
   progress.step("centrelines and proposed neck");
-  Vessel v = made(s, options);
+  Vessel v = made_of_wide_ones(s, options, notes);
   if (o.neck_points) {
     if (!v.neck)
       throw InputError("--neck-points turns the proposed neck, and none was found; give the whole plane with --neck");
@@ -104,14 +165,12 @@ Vessel wall_of(const artery::Surface& surface, const Options& o, std::vector<Not
     progress.step("cutting the ends");
     const std::size_t before = notes.size();
     const artery::NeckPlane neck{v.neck->centre, v.neck->normal};
-    const artery::Surface shorter = trimmed(s, v.centrelines, neck.centre, o.keep, notes);
+    const artery::Surface shorter = shortened(s, v.centrelines, neck.centre, o.keep, notes);
     if (notes.size() > before) {
       s = shorter;
       options.inlet = v.wall.caps[0].centre;  // the piece of the old inlet that is left is the nearest to it
       progress.step("the wall's triangles");
-      if (!options.neck) options.neck = neck;  // the same place, now on finer triangles
-      v = made(s, options);
-      v.proposals = proposals;
+      v = made_again(s, options, neck, proposals);
     }
   }
   if (v.wall.caps.size() < 2)
@@ -177,7 +236,9 @@ Json neck_json(const Vessel& v, bool mirrored) {
 Vessel with_proposals(const artery::Surface& surface, const Options& o) {
   artery::ImportOptions options;
   options.vertices = o.vertices;
-  return made(with_inlet_first(surface, o), options);
+  artery::Surface s = with_inlet_first(surface, o);
+  std::vector<Note> ignored;
+  return made_of_wide_ones(s, options, ignored);
 }
 
 void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {

@@ -4,7 +4,7 @@
 
 Each becomes the folder scenes/cases/NAME: artery and lobes, artery.xml, field.xml, case.xml, a steady motion and one
 that fails. insula_artery makes the artery from its dimensions. insula_case places it and finds the clip's place by
-playing.
+playing, unless the table states it.
 --again writes texts and motions from what a former run has built. docs/case-library.md describes the table.
 """
 import argparse
@@ -17,6 +17,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import placed  # noqa: E402
 import texts  # noqa: E402
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "motions"))
@@ -63,7 +64,7 @@ def build(case, work):
     for region, wall in case.get("walls", {}).items():
         for parameter, value in wall.items():
             words += ["--wall", "%s.%s=%s" % (region, parameter, value)]
-    if "from" in case.get("steady", {}):
+    if texts.scripted(case.get("steady", {})):
         words += ["--no-rehearse"]
     subprocess.run(words, check=True, cwd=ROOT)
     for path in sorted(folder.iterdir()):
@@ -74,6 +75,7 @@ def build(case, work):
     share_lobes(case, folder, work)
     name_branches(case, artery, folder)
     set_variables(case, folder)
+    add_to_tray(case, folder)
 
 
 def share_lobes(case, folder, work):
@@ -117,6 +119,19 @@ def set_variables(case, folder):
             raise SystemExit("field.xml does not include " + part)
         lines = ['\n    <variable name="%s" value="%s"/>' % item for item in variables.items()]
         text = text.replace(head, head + "".join(lines))
+    path.write_text(text, encoding="utf-8")
+
+
+def add_to_tray(case, folder):
+    """Clips that the case needs beside those of the builder: first on the tray, and in each contact of clips."""
+    path = folder / "field.xml"
+    text = path.read_text(encoding="utf-8")
+    first = re.search(r'<clip id="([^"]*)"', text)[1]
+    for name in reversed(case.get("tray", [])):
+        line = '<clip id="%s" model="../../../meshes/clips/%s/%s.urdf"/>\n  ' % (name, name, name)
+        text = text.replace('<clip id="%s"' % first, line + '<clip id="%s"' % first)
+        text = re.sub(r'(clips="|between="[^"]*?)\b%s\b' % first, lambda m: m[1] + name + " " + first, text)
+        first = name
     path.write_text(text, encoding="utf-8")
 
 
@@ -168,23 +183,31 @@ def led_from_home(text, folder, lead):
     return "\n".join(rows[:first] + [row(0.3, begun), row(1.8, turned)] + later) + "\n"
 
 
-def write_motions(case, approach, folder, work):
-    if "from" in case.get("steady", {}):
-        for name, motion in (("steady", case["steady"]), (case["fails"]["motion"], case["fails"])):
-            (folder / ("case_%s.csv" % name)).write_text(borrowed(motion), encoding="utf-8")
-        return
+def built_rows(work):
+    """The motion that the case builder has found, with time for the vessel to come to rest afterwards."""
     rows = (work / "3_clipping_steady.csv").read_text(encoding="utf-8").split("\n")[:-1]
     last, before = rows[-1].split(","), rows[-2].split(",")
     rows[-1] = ",".join(["%g" % (float(before[0]) + AFTERWARDS)] + last[1:])
-    dome, out = directions(read(folder / "artery/vessel.json"), approach)
-    shift = lambda m: [m.get("raise_mm", 0) * d + m.get("back_mm", 0) * o for d, o in zip(dome, out)]
+    return rows
+
+
+def motion_text(motion, case, approach, folder, work):
+    if "from" in motion:
+        return borrowed(motion)
     lead = case.get("lead_mm", 0)
     led = lambda text: led_from_home(text, folder, lead) if lead else text
-    (folder / "case_steady.csv").write_text(led(moved(rows, shift(case.get("steady", {})))), encoding="utf-8")
-    failing = case["fails"]
-    then = shift(failing["then"]) if "then" in failing else None
-    bad = moved(rows, shift(failing), then, failing.get("shut", False))
-    (folder / ("case_%s.csv" % failing["motion"])).write_text(led(bad), encoding="utf-8")
+    if "clip" in motion:
+        return led(placed.motion(motion, folder, approach["to_surgeon"]))
+    dome, out = directions(read(folder / "artery/vessel.json"), approach)
+    shift = lambda m: [m.get("raise_mm", 0) * d + m.get("back_mm", 0) * o for d, o in zip(dome, out)]
+    then = shift(motion["then"]) if "then" in motion else None
+    return led(moved(built_rows(work), shift(motion), then, motion.get("shut", False)))
+
+
+def write_motions(case, approach, folder, work):
+    for motion in texts.motions(case):
+        text = motion_text(motion, case, approach, folder, work)
+        (folder / ("case_%s.csv" % motion["motion"])).write_text(text, encoding="utf-8")
 
 
 def approach_of(name):

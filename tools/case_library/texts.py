@@ -7,6 +7,16 @@ from xml.sax.saxutils import escape, quoteattr
 RULE_FILE = "../../parts/case_rules.xml"
 
 
+def scripted(motion):
+    """Whether a motion does not come from the place that the case builder has found."""
+    return "from" in motion or "clip" in motion
+
+
+def motions(case):
+    """Both motions of a case, the good one first."""
+    return [{**case.get("steady", {}), "motion": "steady"}, case["fails"]]
+
+
 def case_xml(case, approach):
     branches = [case["branches"][b] for b in ("superior", "inferior")]
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', "<!-- %s For training only. -->" % escape(case["about"])]
@@ -30,8 +40,8 @@ def case_xml(case, approach):
             '    <channel_metric id="%s_flow_least" text="Least flow of the %s over that at rest" '
             'channel="clip.%s.flow" statistic="smallest" better="high"/>' % words
         ]
-    for motion in ("steady", case["fails"]["motion"]):
-        lines += ['    <motion id="%s" file="case_%s.csv"/>' % (motion, motion)]
+    for motion in motions(case):
+        lines += ['    <motion id="%s" file="case_%s.csv"/>' % (motion["motion"], motion["motion"])]
     return "\n".join(lines + ["  </exercise>", "</scene>", ""])
 
 
@@ -51,17 +61,27 @@ def shifted(motion):
     return ", ".join(words)
 
 
+def how_made(motion):
+    """Where a motion comes from that the case builder has not found."""
+    if "from" in motion:
+        return "`case_%s.csv` is the scripted motion `%s`." % (motion["motion"], motion["from"])
+    said = "`case_%s.csv` brings the clip `%s` to the place at the neck that `../library.json` states."
+    return said % (motion["motion"], motion["clip"])
+
+
 def how_moved(case, work):
     """Where both motions come from."""
-    if "from" in case.get("steady", {}):
-        said = "`case_steady.csv` and `case_%s.csv` are scripted motions of `tools/motions`: `%s` and `%s`."
-        return said % (case["fails"]["motion"], case["steady"]["from"], case["fails"]["from"])
-    clip = json.loads((work / "scenes.json").read_text(encoding="utf-8"))["clip"]["name"]
-    steady, failing = shifted(case.get("steady", {})), case["fails"]
-    said = "The case builder found the place of the clip `%s` by playing." % clip
-    said += " In `case_steady.csv` it is moved by %s." % steady if steady else " `case_steady.csv` closes it there."
-    said += " In `case_%s.csv` it is moved by %s." % (failing["motion"], shifted(failing))
-    return said
+    steady, failing = motions(case)
+    if scripted(steady):
+        said = [how_made(steady)]
+    else:
+        clip = json.loads((work / "scenes.json").read_text(encoding="utf-8"))["clip"]["name"]
+        said = ["The case builder found the place of the clip `%s` by playing." % clip]
+        by = shifted(steady)
+        said += ["In `case_steady.csv` it is moved by %s." % by if by else "`case_steady.csv` closes it there."]
+    by = "In `case_%s.csv` it is moved by %s." % (failing["motion"], shifted(failing))
+    said += [how_made(failing) if scripted(failing) else by]
+    return " ".join(said)
 
 
 def readme(case, work):

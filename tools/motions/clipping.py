@@ -124,16 +124,17 @@ class Script:
     def command(self, time, verb, argument):
         self.commands.append((time, f"{time:g},command,{verb},{argument}"))
 
-    def write(self, path):
+    def text(self):
         rows = sorted(self.left.rows + self.right.rows + self.commands, key=lambda r: r[0])
-        path.write_text(
-            "time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n" + "\n".join(r[1] for r in rows) + "\n"
-        )
+        return "time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n" + "\n".join(r[1] for r in rows) + "\n"
+
+    def write(self, path):
+        path.write_text(self.text())
 
 
-def place_clip(hand, pose, press=(0, 0, 0), approach=2.5, close=1.6, wait=0.6, open_at=OUT_OF_FIELD):
-    """From outside the field: go in, open the blades `open_at` mm before the place, let the spring close while the hand
-    moves by `press`, move back, let go, leave."""
+def place_clip(hand, pose, press=(0, 0, 0), approach=2.5, close=1.6, wait=0.6, open_at=OUT_OF_FIELD, last=0.8):
+    """From outside the field: go in, open the blades `open_at` mm before the place, take `last` seconds for the last
+    3 mm, let the spring close while the hand moves by `press`, move back, let go, leave."""
     position, q, shaft = pose
     outside = add(position, shaft, OUT_OF_FIELD)
     opened = add(position, shaft, open_at)
@@ -144,15 +145,15 @@ def place_clip(hand, pose, press=(0, 0, 0), approach=2.5, close=1.6, wait=0.6, o
     hand.key(0.05, opened, q, 1)
     hand.key(0.5, opened, q, 1)
     hand.key(approach if open_at == OUT_OF_FIELD else 0.6, near, q, 1)
-    close_clip(hand, pose, press, close, wait)
+    close_clip(hand, pose, press, close, wait, last)
 
 
-def close_clip(hand, pose, press=(0, 0, 0), close=1.6, wait=0.6):
+def close_clip(hand, pose, press=(0, 0, 0), close=1.6, wait=0.6, last=0.8):
     """With an open clip near its place: go there, let the spring close while the hand moves by `press`, move back, let
     go, leave."""
     position, q, shaft = pose
     pressed = add(position, press)
-    hand.key(0.8, position, q, 1)
+    hand.key(last, position, q, 1)
     hand.key(0.3, position, q, 1)
     hand.key(0.02, position, q)
     hand.key(0.25, pressed, q)
@@ -193,10 +194,13 @@ def take_clip(hand, pose):
 
 
 class Field:
-    def __init__(self, case):
+    """An artery, and the direction to the surgeon. `vessel`: its vessel.json, if it is not a shipped one."""
+
+    def __init__(self, case, vessel=None, view=VIEW):
         self.case = case
-        self.vessel = json.loads((ROOT / "meshes/arteries" / case / "vessel.json").read_text())
-        self.view = unit(VIEW)
+        path = vessel or ROOT / "meshes/arteries" / case / "vessel.json"
+        self.vessel = json.loads(path.read_text())
+        self.view = unit(view)
 
     def line(self, name):
         return next(c for c in self.vessel["centrelines"] if c["name"] == name)["points"]
@@ -407,4 +411,5 @@ def main():
     exercise_4(folder)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "core/base/text.h"
+#include "core/model/formats/dicom_mark.h"
 
 namespace insula::gateway {
 namespace {
@@ -70,7 +71,7 @@ SurfaceKind scan_kind(std::string_view head) {
   if (head.starts_with("\x1f\x8b")) return gzip_kind(head);
   if (head.starts_with("PK\x03\x04")) return {".zip", ""};
   if (head.starts_with("NRRD000")) return nrrd_kind(head);
-  if (head.size() >= 132 && head.substr(128, 4) == "DICM") return {".dcm", ""};  // PS3.10, chapter 7.1
+  if (is_dicom_file(head)) return {".dcm", ""};
   if (const SurfaceKind kind = nifti_kind(head, ".nii"); !kind.extension.empty() || !kind.refused.empty()) return kind;
   return meta_kind(head);
 }

@@ -30,8 +30,10 @@ async function take(browser, scene, timeS) {
     }),
   );
   const page = await browser.newPage({ viewport: { width, height } });
+  page.setDefaultTimeout(patience.timeout);
   await page.goto(`${address}&t=${timeS}&quality=high&cues=off`);
-  await page.waitForTimeout(15_000);
+  await page.locator('canvas').first().waitFor();
+  await page.waitForTimeout(Number(process.env.INSULA_PICTURE_WAIT_MS ?? 15_000));
   // The field alone: the widest part of the picture that lies inside of the microscope's disc.
   await page.addStyleTag({
     content: '* { visibility: hidden !important } canvas { visibility: visible !important }',

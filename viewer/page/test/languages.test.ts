@@ -40,7 +40,7 @@ test('what the engine says is translated whole, without its numbers, or by its n
   });
   expect(said('Stop the bleeding')).toBe('Stillen Sie die Blutung');
   expect(said('Divide 12 strands within 2.50 s')).toBe('12 Stränge in 2,50 s durchtrennen');
-  expect(said('Largest force on: left_rail')).toBe('Größte Kraft auf: linke Schiene');
+  expect(said('Largest force on: left rail')).toBe('Größte Kraft auf: linke Schiene');
   expect(said('1.7 N')).toBe('1,7 N');
   expect(said('No 1 knows this: text')).toBe('No 1 knows this: text');
   expect(said('constructor')).toBe('constructor');

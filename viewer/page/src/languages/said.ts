@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Texts that the engine says: of scenes and plugins, in English. They have translations in the same catalogues. Numbers
 // have placeholders there: "Divide 12 strands" is looked up as "Divide {0} strands". So has a name at the end: "Largest
-// force on: left_rail" is looked up as "Largest force on: {name}" and "left rail". `insula texts` prints all of them.
+// force on: left rail" is looked up as "Largest force on: {name}" and "left rail". `insula texts` prints all of them.
 import { fixed } from './numbers';
 import { hasTranslation, languageTag, text } from './text';
 
 const number = /(?<![\p{L}\d._])\d+(?:\.\d+)?(?![\p{L}\d_])/gu;
-const nameAtEnd = /^(.*: )([a-z][a-z0-9_]*)$/;
+const nameAtEnd = /^(.*: )([a-z][a-z0-9 ]*)$/;
 const measured = /^\{0\} ?(mm|N|deg|%|s|ml|mmHg)$/;
 
 /** A text with placeholders, and the numbers that were in it. */
@@ -33,5 +33,5 @@ export function said(english: string): string {
   const [, before, name] = nameAtEnd.exec(english) ?? [];
   const named = `${before}{name}`;
   if (name === undefined || !hasTranslation(named)) return english;
-  return text(named, { name: said(name.replace(/_/g, ' ')) });
+  return text(named, { name: said(name) });
 }
