@@ -222,8 +222,9 @@ void cut_blind_ends(artery::Surface& s, const std::vector<TornBorder>& torn, std
       continue;  // no single tube there
     }
     notes.push_back({Note::Kind::repair,
-                     fmt::format("The end at {} was {}. It was cut straight where the vessel is {:.2f} mm wide.",
-                                 place(e.end), e.torn ? "torn" : "closed and not flat", e.diameter),
+                     (e.torn ? fmt::format("The end at {} was torn.", place(e.end))
+                             : fmt::format("The end at {} was closed and not flat.", place(e.end))) +
+                         fmt::format(" It was cut straight where the vessel is {:.2f} mm wide.", e.diameter),
                      "Where it should end farther in, cut it there (--cut)."});
   }
 }
