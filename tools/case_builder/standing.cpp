@@ -165,7 +165,7 @@ std::vector<Note> judged(const Standing& standing) {
   }
   for (std::size_t i = 0; i < standing.arms.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (!standing.arms[i].lobe.empty() && standing.arms[i].lobe == standing.arms[j].lobe)
+      if (!standing.arms_chosen && !standing.arms[i].lobe.empty() && standing.arms[i].lobe == standing.arms[j].lobe)
         tell(false, "retractors_hold_one_lobe",
              fmt::format("{} and {} both hold the {} lobe.", standing.arms[j].id, standing.arms[i].id,
                          standing.arms[i].lobe));

@@ -118,8 +118,7 @@ bool is_retractor(const Json& v) {
 }
 
 bool are_retractors(const Json& v) {
-  return v.is_null() ||
-         (v.is_array() && v.size() <= most_retractors && std::all_of(v.begin(), v.end(), is_retractor));
+  return v.is_null() || (v.is_array() && v.size() <= most_retractors && std::all_of(v.begin(), v.end(), is_retractor));
 }
 
 bool is_clip(const Json& v) { return v == "" || is_name(v); }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The retractors that an author places: how they are read, how fields and gizmo move them, and where they may not stand.
+// The retractors that an author places: how they are read, how fields and gizmo move them, and where they may not
+// stand.
 import { Vector3 } from 'three';
 import { expect, test } from 'vitest';
 import { choicesOf } from '../src/studio/choices';
@@ -20,8 +21,20 @@ import {
 
 const told = {
   proposed: [
-    { lobe: 'temporal', tip_mm: [54.13, 11.179, -9.821], shaft: [0.997, 0.065, 0.039], flat: [0.101, -0.624, -0.775], pull_mm: 8.4 },
-    { lobe: 'frontal', tip_mm: [53.5, 14.958, -0.055], shaft: [0.839, 0.185, 0.511], flat: [0, -0.148, 0.989], pull_mm: 5 },
+    {
+      lobe: 'temporal',
+      tip_mm: [54.13, 11.179, -9.821],
+      shaft: [0.997, 0.065, 0.039],
+      flat: [0.101, -0.624, -0.775],
+      pull_mm: 8.4,
+    },
+    {
+      lobe: 'frontal',
+      tip_mm: [53.5, 14.958, -0.055],
+      shaft: [0.839, 0.185, 0.511],
+      flat: [0, -0.148, 0.989],
+      pull_mm: 5,
+    },
   ],
   lobes: ['frontal', 'temporal'],
   centre: [54, 4, -2],
@@ -29,7 +42,7 @@ const told = {
   most: 4,
   most_pull_mm: 15,
   most_lean_deg: 80,
-}; // prettier-ignore
+};
 const facts = retractorFactsOf(told) as RetractorFacts;
 const [temporal, frontal] = facts.proposed as [Retractor, Retractor];
 const sight: [number, number, number] = [0.93, 0.25, 0.27];
@@ -63,7 +76,12 @@ test('is pushed in along its shaft until its tip is as far before the neck as sa
   const deeper = withDepth(temporal, neck, sight, before - 2);
   expect(depthOf(deeper, neck, sight)).toBeCloseTo(before - 2, 2);
   const way = new Vector3(...deeper.tip_mm).sub(new Vector3(...temporal.tip_mm));
-  expect(way.clone().normalize().dot(new Vector3(...temporal.shaft).normalize())).toBeCloseTo(-1, 4);
+  expect(
+    way
+      .clone()
+      .normalize()
+      .dot(new Vector3(...temporal.shaft).normalize()),
+  ).toBeCloseTo(-1, 4);
   expect(deeper.shaft).toEqual(temporal.shaft);
 });
 
