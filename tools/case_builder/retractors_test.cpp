@@ -76,17 +76,25 @@ SimulationResult settled(const insula::test::SceneFolder& folder, const std::vec
 }
 
 TEST(Retractors, OneThatIsPlacedStandsThereAndPushesItsLobe) {
-  const Fissure fissure = read_fissure(project, {}, read_approach(project, "sylvian"));
-  std::vector<RetractorAt> all = fissure.proposed;
-  all[1].tip += Vec3(0, 0, 1);  // a millimetre farther into the frontal lobe
+  const Approach sylvian = read_approach(project, "sylvian");
+  const Fissure fissure = read_fissure(project, {}, sylvian);
+  // A millimetre farther into the frontal lobe than the approach's own.
+  const auto all = chosen_retractors(
+      {read_retractor("temporal, 54.13 11.179 -9.821 mm"), read_retractor("frontal, 53.5 14.958 0.945 mm, pull=6 mm")},
+      fissure.proposed, sylvian);
   const insula::test::SceneFolder folder;
   const SimulationResult made = settled(folder, all);
   ASSERT_TRUE(made.simulation);
   const auto& arms = made.simulation->instruments();
   ASSERT_EQ(arms.size(), 2u);
-  for (std::size_t k = 0; k < 2; ++k) EXPECT_LT((1000 * arms[k]->home_pose().p - all[k].tip).norm(), 2e-3);
+  const Vec3 tips[] = {{54.13, 11.179, -9.821}, {53.5, 14.958, 0.945}};
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_LT((1000 * arms[k]->home_pose().p - tips[k]).norm(), 1e-3);
+    EXPECT_LT((arms[k]->home_pose().q * Vec3::UnitZ() - fissure.proposed[k].shaft).norm(), 1e-3);
+  }
   const Standing standing = standing_of(*made.simulation);
   ASSERT_EQ(standing.arms.size(), 2u);
+  EXPECT_EQ(standing.arms[0].lobe, "temporal");
   EXPECT_EQ(standing.arms[1].lobe, "frontal");
   EXPECT_GT(standing.arms[1].force, 0.02);
 }
