@@ -47,7 +47,7 @@ void find_sac(Vessel& vessel, const std::vector<char>& of_sac);
 /// std::runtime_error when the plane parts no dome from the vessel.
 void sac_beyond(Vessel& vessel, const NeckPlane& plane);
 /// The plane near that of the vessel's neck whose section is narrowest, not far up the dome, with no wall of a vessel
-/// on its dome side; nothing where every plane leaves an opening or much of a vessel there. radii: as above.
+/// on its dome side. Nothing where every plane leaves an opening or much of a vessel there. radii: as above.
 std::optional<NeckPlane> narrowest_neck(const Vessel& vessel, const std::vector<double>& radii);
 /// Necks by three methods, the best first: the narrowest section near the shortest line, the plane of that line
 /// (sac_by_cut), and the border of what lies outside of the vessels' tubes (Piccinelli et al. 2012). Empty when nothing
