@@ -193,7 +193,7 @@ async function changeTheThird(page, { chosen, handle }) {
   const moved = (await chosen())[2];
   const mm = apart(moved.tip_mm, before.tip_mm);
   assert.ok(mm < 8, `it was moved by ${mm} mm`);
-  assert.deepEqual({ ...moved, tip_mm: [] }, { ...before, tip_mm: [] }, 'an arrow turns nothing');
+  assert.ok(apart(moved.shaft, before.shaft) + apart(moved.flat, before.flat) < 1e-3, 'an arrow turns nothing');
   const pull = page.getByRole('group', { name: 'Retractor 3' }).getByLabel('Draws the lobe aside by');
   await pull.fill('16');
   await page.locator('[id="retractor-2-pull-about"].bad').waitFor(patience);
