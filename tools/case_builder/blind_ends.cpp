@@ -221,10 +221,10 @@ void cut_blind_ends(artery::Surface& s, const std::vector<TornBorder>& torn, std
     } catch (const InputError&) {
       continue;  // no single tube there
     }
-    constexpr const char* said[] = {
-        "The end at {} was closed and not flat. It was cut straight where the vessel is {:.2f} mm wide.",
-        "The end at {} was torn. It was cut straight where the vessel is {:.2f} mm wide."};
-    notes.push_back({Note::Kind::repair, fmt::format(fmt::runtime(said[e.torn]), place(e.end), e.diameter),
+    notes.push_back({Note::Kind::repair,
+                     (e.torn ? fmt::format("The end at {} was torn.", place(e.end))
+                             : fmt::format("The end at {} was closed and not flat.", place(e.end))) +
+                         fmt::format(" It was cut straight where the vessel is {:.2f} mm wide.", e.diameter),
                      "Where it should end farther in, cut it there (--cut)."});
   }
 }

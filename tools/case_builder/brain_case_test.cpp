@@ -101,6 +101,7 @@ TEST(Standing, WhatIsWrongIsTold) {
   EXPECT_EQ(with([](Standing& t) { t.arms[0].force = 5; }), 1);
   EXPECT_EQ(with([](Standing& t) { t.arms[1].deepest = 4; }), 1);
   EXPECT_EQ(with([](Standing& t) { t.arms[1].lobe = "frontal"; }), 1);
+  EXPECT_EQ(with([](Standing& t) { t.arms[1].lobe = "frontal", t.arms_chosen = true; }), 0);
   EXPECT_EQ(with([](Standing& t) { t.seen = 0.2; }), 1);
   EXPECT_EQ(with([](Standing& t) { t.in_tissue = {"suction"}; }), 1);
   EXPECT_EQ(with([](Standing& t) { t.restless = {{"temporal", 300}}; }), 1);

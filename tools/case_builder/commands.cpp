@@ -21,6 +21,7 @@
 #include "tools/case_builder/project.h"
 #include "tools/case_builder/region_walls.h"
 #include "tools/case_builder/report.h"
+#include "tools/case_builder/retractors.h"
 #include "tools/case_builder/rules.h"
 #include "tools/case_builder/scenes.h"
 #include "tools/case_builder/unit_options.h"
@@ -208,6 +209,24 @@ void brain_options(CLI::App* app, Options& o) {
   app->add_option("--brain-nodes", o.brain_nodes, "of both lobes' tetrahedra, at most")->check(CLI::Range(200, 20000));
 }
 
+void retractor_options(CLI::App* app, Options& o) {
+  app->add_option_function<std::vector<std::string>>(
+         "--retractor",
+         [&o](const std::vector<std::string>& v) {
+           o.retractors.emplace();
+           for (const std::string& one : v) o.retractors->push_back(read_retractor(one));
+         },
+         "a brain retractor in place of those of the approach: \"LOBE, X Y Z mm, shaft=X Y Z, flat=X Y Z, pull=5 mm\", "
+         "the lobe it draws aside, its tip in the frame of the lobes, the direction to its handle, that of the side "
+         "which presses, and how far it draws; what is left out is as in the approach; may be given again")
+      ->take_all()
+      ->check(refusal_of<RetractorChoice>(read_retractor));
+  app->add_flag_callback(
+      "--no-retractors", [&o] { o.retractors.emplace(); }, "no brain retractor at all");
+  app->add_flag_callback(
+      "--retractors-as-proposed", [&o] { o.retractors.reset(); }, "the retractors of the approach again");
+}
+
 void place_options(CLI::App* app, Options& o) {
   app->add_option("--approach", o.approach,
                   "the way to the aneurysm, a name of meshes/*/approach.json (default: sylvian)");
@@ -226,6 +245,7 @@ void place_options(CLI::App* app, Options& o) {
                    .min = "-360 deg",
                    .max = "360 deg",
                    .doc = "turn about the sac's axis (default: the one with the most room)"});
+  retractor_options(app, o);
 }
 
 void scene_options(CLI::App* app, Options& o) {

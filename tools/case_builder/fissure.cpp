@@ -44,7 +44,45 @@ Lobe given_lobe(const std::filesystem::path& folder, const std::string& name, co
   return lobe;
 }
 
+/// The lobe that an arm holds: the soft body of a contact with it.
+std::string held_by(const Simulation& simulation, const Instrument& arm) {
+  for (const Constraint* c : simulation.constraints()) {
+    const auto* between = dynamic_cast<const RefList<Body>*>(c->find_param("between"));
+    if (!between || std::find((*between)().begin(), (*between)().end(), &arm) == (*between)().end()) continue;
+    for (const Body* other : (*between)())
+      if (dynamic_cast<const SoftBody*>(other)) return other->id;
+  }
+  return {};
+}
+
+/// An arm comes to its place from behind its flat side.
+RetractorAt retractor_of(const Simulation& simulation, const Instrument& arm) {
+  const Mat3 turn = arm.home_pose().q.toRotationMatrix();
+  const auto* from = dynamic_cast<const Param<Vec<Length>>*>(arm.find_param("approach"));
+  return {held_by(simulation, arm), 1000 * arm.home_pose().p, turn.col(2), turn.col(0),
+          from ? 1000 * (*from)().norm() : 0};
+}
+
+TriMesh blade_of(const Instrument& arm) {
+  TriMesh out;
+  for (const ToolPart& part : arm.tool().parts) {
+    const int first = int(out.vertices.size());
+    for (const Vec3& p : part.mesh.vertices) out.vertices.push_back(1000 * p);
+    for (const auto& t : part.mesh.triangles) out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return out;
+}
+
 }  // namespace
+
+std::vector<RetractorAt> retractors_of(const Options& o, const Fissure& fissure) {
+  return o.retractors ? chosen_retractors(*o.retractors, fissure.proposed, fissure.approach) : fissure.proposed;
+}
+
+Fissure with_retractors(Fissure fissure, const Options& o) {
+  fissure.retractors = at_places(fissure.blade, retractors_of(o, fissure));
+  return fissure;
+}
 
 Fissure read_fissure(const std::filesystem::path& project, const std::filesystem::path& lobes,
                      const Approach& approach) {
@@ -73,13 +111,11 @@ Fissure read_fissure(const std::filesystem::path& project, const std::filesystem
       lobe.embedded_vertices.push_back({p.count, p.node, p.weight, 1000 * p.local});
     out.lobes.push_back(std::move(lobe));
   }
-  for (const Instrument* tool : loaded.simulation->instruments())
-    for (const ToolPart& part : tool->tool().parts) {
-      const int first = int(out.retractors.vertices.size());
-      for (const Vec3& p : part.mesh.vertices) out.retractors.vertices.push_back(1000 * tool->home_pose().apply(p));
-      for (const auto& t : part.mesh.triangles)
-        out.retractors.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    }
+  for (const Instrument* arm : loaded.simulation->instruments()) {
+    out.proposed.push_back(retractor_of(*loaded.simulation, *arm));
+    out.blade = blade_of(*arm);
+  }
+  out.retractors = at_places(out.blade, out.proposed);
   if (!lobes.empty()) {
     out.floor = read_surface(lobes / (approach.floor + "_surface.ply"), 1.0);
     for (Lobe& lobe : out.lobes) lobe = given_lobe(lobes, lobe.name, approach);

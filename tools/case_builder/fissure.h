@@ -8,6 +8,7 @@
 
 #include "core/model/mesh.h"
 #include "tools/case_builder/approach.h"
+#include "tools/case_builder/retractors.h"
 
 namespace insula::case_builder {
 
@@ -29,8 +30,10 @@ struct Lobe {
 struct Fissure {
   Approach approach;
   std::vector<Lobe> lobes;
-  TriMesh floor;       ///< rigid
-  TriMesh retractors;  ///< as they stand at home
+  TriMesh floor;                      ///< rigid
+  TriMesh retractors;                 ///< as they stand at home
+  TriMesh blade;                      ///< of one, as at_place() takes it
+  std::vector<RetractorAt> proposed;  ///< those of the approach
   struct Rigid {
     std::string name;  ///< of Approach::obstacles
     TriMesh mesh;
@@ -42,5 +45,10 @@ struct Fissure {
 /// of its meshes, mm; empty: those. Throws InputError.
 Fissure read_fissure(const std::filesystem::path& project, const std::filesystem::path& lobes,
                      const Approach& approach);
+
+/// The retractors of a case: the author's, if there are any, else those of the approach. Throws InputError.
+std::vector<RetractorAt> retractors_of(const Options& options, const Fissure& fissure);
+/// The fissure with those.
+Fissure with_retractors(Fissure fissure, const Options& options);
 
 }  // namespace insula::case_builder

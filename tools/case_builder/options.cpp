@@ -44,6 +44,30 @@ std::vector<WallPatch> wall_patches_from_json(const Json& json) {
   return out;
 }
 
+Json retractors_json(const std::vector<RetractorChoice>& retractors) {
+  Json out = Json::array();
+  for (const RetractorChoice& r : retractors) {
+    Json one = {{"lobe", r.lobe}, {"tip_mm", r.tip}};
+    put(one, "shaft", r.shaft);
+    put(one, "flat", r.flat);
+    put(one, "pull_mm", r.pull);
+    out.push_back(one);
+  }
+  return out;
+}
+
+std::vector<RetractorChoice> retractors_from_options(const Json& json) {
+  std::vector<RetractorChoice> out;
+  for (const Json& one : json) {
+    RetractorChoice r{one.at("lobe"), one.at("tip_mm").get<Point>(), {}, {}, {}};
+    take(one, "shaft", r.shaft);
+    take(one, "flat", r.flat);
+    take(one, "pull_mm", r.pull);
+    out.push_back(std::move(r));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<Stroke> strokes_from_json(const Json& json) {
@@ -88,6 +112,7 @@ Json to_json(const Options& o) {
   j["spin"] = o.spin;
   j["keep_spin"] = o.keep_spin;
   put(j, "pose", o.pose);
+  if (o.retractors) j["retractors"] = retractors_json(*o.retractors);
   j["lobes"] = o.lobes;
   if (!o.site.empty()) j["site"] = o.site;
   if (o.difficulty > 0) j["difficulty"] = o.difficulty;
@@ -135,6 +160,7 @@ Options options_from_json(const Json& j) {
     take(j, "spin", o.spin);
     take(j, "keep_spin", o.keep_spin);
     take(j, "pose", o.pose);
+    if (j.contains("retractors")) o.retractors = retractors_from_options(j["retractors"]);
     take(j, "lobes", o.lobes);
     take(j, "site", o.site);
     take(j, "difficulty", o.difficulty);

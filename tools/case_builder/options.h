@@ -32,6 +32,15 @@ struct WallPatch {
   std::string thickness, young;
 };
 
+/// A brain retractor, in the frame of the approach's meshes, in mm. What is not given is as that of the approach's
+/// retractor of the same lobe.
+struct RetractorChoice {
+  std::string lobe;
+  Point tip{};
+  std::optional<Point> shaft, flat;  ///< directions: to the handle, and of the side that presses the lobe
+  std::optional<double> pull;        ///< how far it draws the lobe aside while the scene settles
+};
+
 /// Lengths in millimetres, positions in the frame of the input after its unit has been applied, before it is mirrored.
 struct Options {
   // intake
@@ -69,8 +78,10 @@ struct Options {
   double gap = 0.4;                  ///< between the wall and the lobes
   double spin = 0;  ///< turns the vessel about the sac's axis, degrees, after which the place is looked for nearby
   std::optional<RigidMotion> pose;  ///< in place of the search: where the vessel is moved to
-  bool keep_spin = false;           ///< no other spin is tried
-  std::string lobes;                ///< folder with lobes as those of meshes/lobes; empty: those
+  /// In place of those of the approach; an empty list: none.
+  std::optional<std::vector<RetractorChoice>> retractors;
+  bool keep_spin = false;  ///< no other spin is tried
+  std::string lobes;       ///< folder with lobes as those of meshes/lobes; empty: those
   // scenes
   std::string site;                         ///< of the aneurysm, a choice of Exercise::site; empty: not said
   int difficulty = 0;                       ///< 1 to 5; 0: not said

@@ -78,6 +78,26 @@ Fitted fitted(const Candidate& c, const Fissure& fissure, const Options& o, Prog
   return out;
 }
 
+/// Where a blade would stand in what does not give way to it.
+void add_retractor_notes(const std::vector<RetractorAt>& all, const Fitted& fitted, std::vector<Note>& notes) {
+  const Solid floor(fitted.fissure.floor), wall(fitted.vessel.wall.mesh);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const TriMesh blade = at_place(fitted.fissure.blade, all[k]);
+    const auto tell = [&](const Solid& in, const std::string& what, double allowed) {
+      double deepest = 0;
+      for (const Vec3& p : blade.vertices)
+        if (const Nearest n = in.nearest(p, 12); n.found) deepest = std::max(deepest, -n.distance);
+      if (deepest > allowed)
+        notes.push_back(problem(
+            "retractor_in_" + what,
+            fmt::format("Retractor {} ({} lobe) stands {:.1f} mm deep in the {}.", k + 1, all[k].lobe, deepest, what),
+            "Draw it back or move it aside (--retractor)."));
+    };
+    tell(floor, fitted.fissure.approach.floor, 1.5);
+    tell(wall, "vessel", 0);
+  }
+}
+
 }  // namespace
 
 Placement placement_of(const RigidMotion& m) {
@@ -110,7 +130,8 @@ void run_place(const CaseFolder& folder, const fs::path& project, const Options&
   progress.step("reading the fissure");
   const artery::Vessel v = read_wall(folder.wall());
   const Approach approach = read_approach(project, o.approach);
-  const Fissure fissure = read_fissure(project, o.brain.empty() ? fs::path(o.lobes) : folder.brain(), approach);
+  const Fissure fissure =
+      with_retractors(read_fissure(project, o.brain.empty() ? fs::path(o.lobes) : folder.brain(), approach), o);
   // A vessel that lies in the frame of the author's own brain goes where that went.
   const std::vector<Placement> all = o.in_place && !o.pose && !o.brain.empty()
                                          ? std::vector<Placement>{brain_motion(folder)}
@@ -143,6 +164,11 @@ void run_place(const CaseFolder& folder, const fs::path& project, const Options&
                              {"before_mm", rounded(r.before)},
                              {"after_mm", rounded(r.after)},
                              {"moved_mm", rounded(r.moved)}});
+  if (o.retractors) {
+    const std::vector<RetractorAt> all_retractors = retractors_of(o, fissure);
+    json["retractors"] = to_json(all_retractors);
+    add_retractor_notes(all_retractors, best, best.notes);
+  }
   json["notes"] = to_json(best.notes);
   write_json(folder.path / "place.json", json);
   progress.finish();

@@ -70,7 +70,7 @@ class PlacementCost {
     };
     for (const Lobe& lobe : fissure.lobes) add(lobe.surface, 1);
     add(fissure.floor, 6);
-    add(fissure.retractors, 6);
+    if (!fissure.retractors.triangles.empty()) add(fissure.retractors, 6);
     const auto& all = v.wall.mesh.vertices;
     for (std::size_t i = 0; i < all.size(); i += std::max<std::size_t>(1, all.size() / 350))
       samples_.push_back(all[i] - v.neck->centre);

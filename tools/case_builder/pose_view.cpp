@@ -29,8 +29,9 @@ Json told(const Placement& p, const std::vector<Room>& rooms, double Room::*whic
 
 PoseView::PoseView(const CaseFolder& folder, const fs::path& project, const Options& o)
     : vessel_(read_wall(folder.wall())),
-      fissure_(read_fissure(project, o.brain.empty() ? fs::path(o.lobes) : folder.brain(),
-                            read_approach(project, o.approach))),
+      fissure_(with_retractors(read_fissure(project, o.brain.empty() ? fs::path(o.lobes) : folder.brain(),
+                                            read_approach(project, o.approach)),
+                               o)),
       built_(placement_from(read_json(folder.path / "place.json"))),
       gap_(o.gap) {
   if (!vessel_.neck) throw InputError("the vessel has no neck; do the stage wall again");
@@ -78,12 +79,23 @@ Json PoseView::write_surfaces(const fs::path& folder) const {
   for (const Lobe& lobe : fissure_.lobes) all.emplace_back(lobe.name, &lobe.surface);
   all.emplace_back(fissure_.approach.floor, &fissure_.floor);
   all.emplace_back("retractors", &fissure_.retractors);
+  all.emplace_back("retractor", &fissure_.blade);
   Json names = Json::array();
   for (const auto& [name, mesh] : all) {
+    if (mesh->triangles.empty()) continue;
     write_ply(folder / (name + ".ply"), *mesh, "unit mm");
-    names.push_back(name);
+    if (mesh != &fissure_.blade) names.push_back(name);
   }
+  const Approach& approach = fissure_.approach;
   return {{"surfaces", names},
+          {"retractors",
+           {{"proposed", to_json(fissure_.proposed)},
+            {"lobes", approach.lobes},
+            {"centre", to_json(approach.centre)},
+            {"radius_mm", approach.radius},
+            {"most", most_retractors},
+            {"most_pull_mm", most_pull},
+            {"most_lean_deg", most_lean}}},
           {"pose", motion_of(built_)},
           {"neck", to_json(vessel_.neck->centre)},
           {"neck_normal", to_json(vessel_.neck->normal)},

@@ -26,7 +26,8 @@ class PoseView {
   /// then are go to `folder` as parted_NAME.ply, and surfaces has their names. Takes seconds.
   Json look_parted(const Placement& placement, const fs::path& folder) const;
   /// Surfaces for a picture, NAME.ply: "vessel" in its own frame, the others in that of the approach.
-  /// {surfaces: [NAME], pose of the built case, neck: point in the vessel's frame, eye}
+  /// "retractor" is one blade, as at_place() takes it. Gives {surfaces: [NAME], pose of the built case, neck: point in
+  /// the vessel's frame, eye, retractors: {proposed, lobes, limits}}.
   Json write_surfaces(const fs::path& folder) const;
 
  private:

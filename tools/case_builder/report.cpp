@@ -139,6 +139,7 @@ void run_report(const CaseFolder& folder, const fs::path& project, const Options
   for (const fs::path& file : exercise_files(folder)) {
     progress.step("running " + file.filename().string());
     exercises.push_back(measure_scene(file, 60));
+    exercises.back().standing.arms_chosen = place.contains("retractors");
   }
   progress.step("playing the clipping");
   const MeasuredMotion clipping = measure_motion(exercise_file(folder, 3), 12);

@@ -27,6 +27,18 @@ std::string fissure(const SceneFacts& f, const std::string& part) {
                      f.assets.parts, part, f.assets.lobes);
 }
 
+constexpr const char* own_retractors = "retractors.xml";
+
+/// The same, as the exercises about the aneurysm have it.
+std::string held_fissure(const SceneFacts& f) {
+  if (f.retractors) return fmt::format("  <include file=\"{}\"/>\n", own_retractors);
+  return fissure(f, f.approach.open_part);
+}
+
+std::string numbers(const Vec3& v, int decimals) {
+  return fmt::format("{:.{}f} {:.{}f} {:.{}f}", v.x() + 0.0, decimals, v.y() + 0.0, decimals, v.z() + 0.0, decimals);
+}
+
 std::string tool(const SceneFacts& f, const char* element, const char* id, const char* hand, const char* model,
                  const std::string& rest) {
   return fmt::format("  <{} id=\"{}\" hand=\"{}\" model=\"{}/instruments/{}/{}.urdf\"\n    {}/>\n", element, id, hand,
@@ -155,12 +167,45 @@ std::string artery_part(const SceneFacts& f) {
   return s;
 }
 
+/// As scenes/parts/retracted_fissure.xml has them.
+std::string retractors_part(const SceneFacts& f) {
+  const Approach& a = f.approach;
+  std::string s = head, arms;
+  s += fmt::format("<!-- The fissure held open by retractors where the author wants them. {} -->\n<part>\n",
+                   training_only);
+  s += fmt::format(
+      "  <include file=\"{}/{}\">\n    <variable name=\"lobes\" value=\"{}\"/>\n    <variable "
+      "name=\"tangent_tolerance\" value=\"0.02\"/>\n  </include>\n",
+      f.assets.parts, a.closed_part, f.assets.lobes);
+  for (std::size_t k = 0; k < f.retractors->size(); ++k) {
+    const RetractorAt& r = (*f.retractors)[k];
+    const std::string id = fmt::format("arm_{}", k + 1);
+    arms += " " + id;
+    s +=
+        tool(f, "retractor", id.c_str(), "none", "retractor",
+             fmt::format("home=\"{} mm\" shaft=\"{}\" flat=\"{}\" coupling=\"2000 N/m\" angular_coupling=\"2 N m/rad\" "
+                         "approach=\"{} mm\"",
+                         numbers(r.tip, 3), numbers(r.shaft, 4), numbers(r.flat, 4), numbers(-r.pull * r.flat, 3)));
+  }
+  s += "  <contact id=\"lobes\" between=\"" + a.lobes[0] + " " + a.lobes[1] + " " + joined(a.obstacles) +
+       "\" friction=\"0\" tissue_alarm=\"0.8 mm\" tissue_spacing=\"2 mm\" tissue_max_contacts=\"40\" "
+       "tissue_max_force=\"0.05 N\"/>\n";
+  for (std::size_t k = 0; k < f.retractors->size(); ++k)
+    s += fmt::format(
+        "  <contact id=\"held_{0}\" between=\"{1} arm_{0}\" friction=\"0.1\" contact_geometry=\"vertices\" "
+        "spacing=\"1 mm\" max_contacts=\"60\" patch=\"6 mm\" max_correction=\"0.2 mm\" alarm=\"0.5 mm\" "
+        "contact_stiffness=\"1000 N/m\"/>\n",
+        k + 1, (*f.retractors)[k].lobe);
+  if (!arms.empty()) s += "  <contact id=\"arms\" between=\"" + a.floor + arms + "\"/>\n";
+  return s + "</part>\n";
+}
+
 std::string field_part(const SceneFacts& f) {
   const Approach& a = f.approach;
   const std::string clips = joined(f.clips);
   std::string s = head;
   s += fmt::format("<!-- What the exercises with clips share. {} -->\n<part>\n", training_only);
-  s += fissure(f, a.open_part);
+  s += held_fissure(f);
   s += "  <include file=\"artery.xml\"/>\n";
   for (const std::string& c : f.clips)
     s += fmt::format("  <clip id=\"{}\" model=\"{}/clips/{}/{}.urdf\"/>\n", c, f.assets.meshes, c, c);
@@ -297,7 +342,7 @@ std::string opening_exercise(const SceneFacts& f) {
 std::string dissection_exercise(const SceneFacts& f) {
   const Approach& a = f.approach;
   std::string s = opened(f, "Exercise 2: free the aneurysm of its strands.", "dissection of the aneurysm");
-  s += fissure(f, a.open_part);
+  s += held_fissure(f);
   s += "  <include file=\"artery.xml\"/>\n";
   s +=
       view(f, a.dissection.view) + "\n  <settle time=\"3 s\"/>\n  <solver max_sweeps=\"80\" tolerance=\"1e-7 m\"/>\n\n";

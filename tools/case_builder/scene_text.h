@@ -3,6 +3,7 @@
 #pragma once
 #include "tools/case_builder/clip_plan.h"
 #include "tools/case_builder/region_walls.h"
+#include "tools/case_builder/retractors.h"
 #include "tools/case_builder/rules.h"
 #include "tools/case_builder/scenes.h"
 #include "tools/case_builder/wall_patches.h"
@@ -27,15 +28,18 @@ struct SceneFacts {
   double strand_share = 1;  ///< of the usual density of strands
   double strand_shift = 0;  ///< mm that their balls lie nearer to the surgeon
   std::vector<RuleChange> rules = {};
-  fs::path folder = {};    ///< of the case
-  std::string site = {};   ///< Exercise::site
-  int difficulty = 0;      ///< Exercise::difficulty
-  bool opened = true;      ///< exercise 1 has scripted hands
-  bool rehearsed = false;  ///< exercise 2 has scripted hands
+  fs::path folder = {};                                     ///< of the case
+  std::string site = {};                                    ///< Exercise::site
+  int difficulty = 0;                                       ///< Exercise::difficulty
+  std::optional<std::vector<RetractorAt>> retractors = {};  ///< in place of those of the approach
+  bool opened = true;                                       ///< exercise 1 has scripted hands
+  bool rehearsed = false;                                   ///< exercise 2 has scripted hands
 };
 
 std::string artery_part(const SceneFacts& facts);
 std::string field_part(const SceneFacts& facts);
+/// The fissure held open by the author's own retractors. Only with SceneFacts::retractors.
+std::string retractors_part(const SceneFacts& facts);
 /// Kinds of strands about the aneurysm: to each lobe, and between branches and sac.
 std::vector<std::string> all_strand_sets(const Approach& approach);
 /// Strands of one kind about the aneurysm: to a lobe, or "branches".

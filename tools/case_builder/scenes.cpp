@@ -40,7 +40,9 @@ SceneFacts facts_of(const CaseFolder& folder, const artery::Vessel& v, const Opt
   const Json wall = read_json(folder.wall() / "notes.json");
   f.walls = walls_from(wall.at("walls"));
   f.patches = patches_from(wall.value("patches", Json::array()));
-  const Placement to = placement_from(read_json(folder.path / "place.json"));
+  const Json place = read_json(folder.path / "place.json");
+  const Placement to = placement_from(place);
+  if (place.contains("retractors")) f.retractors = retractors_from(place["retractors"]);
   for (PatchOf& patch : f.patches)
     for (Vec3& spot : patch.spots) spot = to.apply(spot);
   for (const artery::NamedCurve& c : v.centrelines) {
@@ -57,6 +59,8 @@ SceneFacts facts_of(const CaseFolder& folder, const artery::Vessel& v, const Opt
 
 void write_clipping(const SceneFacts& f, const CaseFolder& folder) {
   write_text(folder.path / "artery.xml", artery_part(f));
+  if (f.retractors) write_text(folder.path / "retractors.xml", retractors_part(f));
+  else fs::remove(folder.path / "retractors.xml");
   write_text(folder.path / "field.xml", field_part(f));
   write_text(exercise_file(folder, 3), exercise(f, 3));
 }

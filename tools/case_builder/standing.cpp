@@ -150,7 +150,7 @@ Standing standing_of(const Simulation& s) {
 std::vector<Note> judged(const Standing& standing) {
   constexpr const char* where =
       "The arms, the hands and the microscope stand about the fissure of a brain in the MNI frame: register yours to "
-      "it better, or move the arms in a copy of scenes/parts/retracted_fissure.xml.";
+      "it better, or move the retractors (--retractor).";
   std::vector<Note> notes;
   const auto tell = [&](bool good, const char* id, std::string text) {
     notes.push_back(good ? Note{Note::Kind::fact, std::move(text), ""} : problem(id, std::move(text), where));
@@ -165,7 +165,7 @@ std::vector<Note> judged(const Standing& standing) {
   }
   for (std::size_t i = 0; i < standing.arms.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (!standing.arms[i].lobe.empty() && standing.arms[i].lobe == standing.arms[j].lobe)
+      if (!standing.arms_chosen && !standing.arms[i].lobe.empty() && standing.arms[i].lobe == standing.arms[j].lobe)
         tell(false, "retractors_hold_one_lobe",
              fmt::format("{} and {} both hold the {} lobe.", standing.arms[j].id, standing.arms[i].id,
                          standing.arms[i].lobe));

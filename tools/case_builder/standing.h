@@ -22,6 +22,7 @@ struct RestlessLobe {
 };
 struct Standing {
   std::vector<StandingArm> arms;
+  bool arms_chosen = false;  ///< the author has placed them, and may want several on one lobe
   std::vector<RestlessLobe> restless;
   double seen = 1;  ///< of the sac's side that faces the microscope, the share that no lobe, bone or arm hides
   bool has_sac = false;

@@ -20,6 +20,8 @@ constexpr std::size_t most_cuts = 12;
 constexpr std::size_t most_strokes = 100, most_points = 200;
 constexpr std::size_t most_changes = 200;
 constexpr std::size_t most_patches = 20;
+constexpr std::size_t most_retractors = 4;
+constexpr double most_pull = 15;  // mm
 
 bool is_number(const Json& v, double least, double most) {
   return v.is_number() && std::isfinite(v.get<double>()) && v.get<double>() >= least && v.get<double>() <= most;
@@ -98,11 +100,28 @@ bool are_patches(const Json& v) {
   return v.is_array() && v.size() <= most_patches && std::all_of(v.begin(), v.end(), is_patch);
 }
 
-bool is_clip(const Json& v) {
-  return v.is_string() && v.get_ref<const std::string&>().size() <= 64 &&
+/// Of a clip or a lobe.
+bool is_name(const Json& v) {
+  return v.is_string() && !v.get_ref<const std::string&>().empty() && v.get_ref<const std::string&>().size() <= 64 &&
          std::all_of(v.get_ref<const std::string&>().begin(), v.get_ref<const std::string&>().end(),
                      [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
+
+/// As tools/case_builder/retractors.h reads it.
+bool is_retractor(const Json& v) {
+  const auto is_direction = [](const Json& d) {
+    return are_numbers(d, 3) && std::hypot(d[0].get<double>(), d[1].get<double>(), d[2].get<double>()) > 1e-6;
+  };
+  return v.is_object() && v.size() == 5 && v.contains("lobe") && is_name(v["lobe"]) && v.contains("tip_mm") &&
+         are_numbers(v["tip_mm"], 3) && v.contains("shaft") && is_direction(v["shaft"]) && v.contains("flat") &&
+         is_direction(v["flat"]) && v.contains("pull_mm") && is_number(v["pull_mm"], 0, most_pull);
+}
+
+bool are_retractors(const Json& v) {
+  return v.is_null() || (v.is_array() && v.size() <= most_retractors && std::all_of(v.begin(), v.end(), is_retractor));
+}
+
+bool is_clip(const Json& v) { return v == "" || is_name(v); }
 
 struct Rule {
   std::function<bool(const Json&)> allows;
@@ -147,6 +166,9 @@ const std::map<std::string, Rule>& rules() {
         "there are 20 painted parts of the wall at most, each with 1 to 200 points, a radius, a thickness "
         "and a stiffness"}},
       {"pose", {[](const Json& v) { return v.is_null() || are_numbers(v, 6); }, "a place has six numbers"}},
+      {"retractors",
+       {are_retractors,
+        "there are 4 retractors at most, each with a lobe, a tip, two directions, and a pull of 0 to 15 mm"}},
       {"rehearse", {is_switch, "the exercises are played, or not"}},
       {"rules", {are_rule_changes, "a goal is changed by its exercise, its name and a value"}},
       {"clip", {is_clip, "this is no clip"}},
@@ -184,6 +206,15 @@ std::string patch(const Json& v) {
   return out;
 }
 
+std::string direction(const Json& v) {
+  return fmt::format("{:.4f} {:.4f} {:.4f}", v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+}
+
+std::string retractor(const Json& v) {
+  return fmt::format("{}, {}, shaft={}, flat={}, pull={:g} mm", v["lobe"].get<std::string>(), place(v["tip_mm"]),
+                     direction(v["shaft"]), direction(v["flat"]), v["pull_mm"].get<double>());
+}
+
 }  // namespace
 
 Json first_choices() {
@@ -205,6 +236,7 @@ Json first_choices() {
           {"wall_patches", Json::array()},
           {"spin_deg", nullptr},
           {"pose", nullptr},
+          {"retractors", nullptr},
           {"rehearse", true},
           {"plays", 16},
           {"site", ""},
@@ -277,6 +309,10 @@ std::vector<std::string> case_words(const Json& c) {
   for (const Json& painted : c["wall_patches"])
     if (painted["thickness"] != "" || painted["young"] != "") add("--wall-patch", patch(painted));
   if (!c["pose"].is_null()) add("--pose", pose_words(c["pose"]));
+  if (const Json& all = c["retractors"]; all.is_array()) {
+    if (all.empty()) out.emplace_back("--no-retractors");
+    for (const Json& one : all) add("--retractor", retractor(one));
+  }
   if (!c["spin_deg"].is_null()) add("--spin", fmt::format("{:g} deg", c["spin_deg"].get<double>()));
   if (c["rehearse"] == false) out.emplace_back("--no-rehearse");
   if (c["plays"] != before["plays"]) add("--plays", std::to_string(c["plays"].get<int>()));

@@ -87,6 +87,36 @@ TEST(StudioChoices, PaintedPartsAndThePlaceBecomeOptions) {
   EXPECT_THROW(changed_choices(c, {{"pose", {1, 2, 3}}}), InputError);
 }
 
+TEST(StudioChoices, RetractorsBecomeOptions) {
+  using Words = std::vector<std::string>;
+  const json one = {{"lobe", "frontal"},
+                    {"tip_mm", {53.5, 15, 0}},
+                    {"shaft", {0.8, 0.2, 0.5}},
+                    {"flat", {0, 0, 1}},
+                    {"pull_mm", 5.5}};
+  const auto words = [](const json& retractors) {
+    return case_words(changed_choices(first_choices(), {{"retractors", retractors}}));
+  };
+  const std::string option =
+      "frontal, 53.500 15.000 0.000 mm, shaft=0.8000 0.2000 0.5000, flat=0.0000 0.0000 1.0000, pull=5.5 mm";
+  EXPECT_EQ(words(json::array({one, one})), (Words{"--retractor", option, "--retractor", option}));
+  EXPECT_EQ(words(json::array()), Words{"--no-retractors"});
+  EXPECT_EQ(words(nullptr), Words()) << "those of the approach";
+  EXPECT_THROW(words(json::array_t(5, one)), InputError);
+  const std::pair<const char*, json> wrong[] = {{"lobe", ""},       {"lobe", "frontal, pull=9 mm"},
+                                                {"tip_mm", {1, 2}}, {"shaft", {0, 0, 0}},
+                                                {"flat", "up"},     {"pull_mm", 16},
+                                                {"pull_mm", -1},    {"width_mm", 3}};
+  for (const auto& [name, value] : wrong) {
+    json bad = one;
+    bad[name] = value;
+    EXPECT_THROW(words(json::array({bad})), InputError) << name << " " << value;
+  }
+  json bad = one;
+  bad.erase("flat");
+  EXPECT_THROW(words(json::array({bad})), InputError);
+}
+
 TEST_F(StudioTest, APlaceOfABuiltCaseIsLookedAt) {
   const std::string name = ready();
   EXPECT_EQ(studio_->get("pose", "name=" + name).status, 409) << "it is not built";

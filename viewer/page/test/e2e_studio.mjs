@@ -9,7 +9,7 @@ import { join } from 'node:path';
 import { axeFinds } from './axe.mjs';
 import { check, launch, patience, waitFor } from './browser.mjs';
 import { ownBus, Programs, root } from './programs.mjs';
-import { moveTheVessel, paintAPlaque, project } from './studio_deeds.mjs';
+import { addARetractor, moveTheVessel, paintAPlaque, project } from './studio_deeds.mjs';
 import { childrenOf, gatewayBelow } from './studio_processes.mjs';
 import { dropped, picture, shots, step, viewport } from './studio_page.mjs';
 
@@ -211,6 +211,8 @@ try {
   await shot(page, 'walls');
   const { moved, mm } = await moveTheVessel(page);
   check(`the vessel is moved by ${mm.toFixed(2)} mm, with its overlap and the sight of its neck`);
+  const added = await addARetractor(page);
+  check(`a retractor is added, moved by ${added.mm.toFixed(2)} mm and removed, and all is undone`);
   await page.getByRole('button', { name: 'Build', exact: true }).click();
   await page.locator('.stages .now').waitFor(patience);
   await page.getByText('Choices have changed since: build again.').waitFor({ state: 'hidden', ...patience });
@@ -226,10 +228,13 @@ try {
   const wall = readFileSync(join(data, 'studio/narrow_neck', built.number, 'narrow_neck/artery.xml'), 'utf8');
   assert.match(wall, /regions="neck" thickness="[0-9.]+ mm" young="7 MPa"/);
   assert.match(wall, /id="wall_patch_1" spots="[^"]* mm; [^"]*" spot_radius="1 mm" thickness="0.5 mm" young="8 MPa"/);
+  const arms = readFileSync(join(data, 'studio/narrow_neck', built.number, 'narrow_neck/retractors.xml'), 'utf8');
+  const way = /id="arm_2"[^>]*approach="([^"]*) mm"/.exec(arms)[1].split(' ').map(Number);
+  assert.ok(Math.abs(Math.hypot(...way) - added.retractor.pull_mm) < 0.01, `${way}`);
   const place = readFileSync(join(data, 'studio/narrow_neck', built.number, 'narrow_neck/place.json'), 'utf8');
   const shift = JSON.parse(place).shift_mm;
   assert.ok(Math.hypot(...shift.map((x, k) => x - moved[k])) < 0.01, `${shift}: ${moved}`);
-  check('the painted part and the place are built');
+  check('the painted part, the place and the retractors are built');
   check('a goal, a limit, strands and the stiffness of the neck are changed by forms, and built');
 
   await page.locator('.clip select').selectOption('angled_60_6');

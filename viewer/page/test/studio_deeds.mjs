@@ -32,6 +32,7 @@ async function drag(page, from, by, whileDown = () => undefined) {
   const way = unsteadyWay(from, by);
   await page.mouse.move(...way[0]);
   await pause(60); // a gizmo shows what is below the pointer
+  await page.evaluate(() => new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r)))); // it is drawn
   await page.mouse.down();
   for (const place of way.slice(1)) {
     await page.mouse.move(...place);
@@ -178,4 +179,72 @@ export async function moveTheVessel(page) {
   const mm = apart(moved, before);
   await page.getByRole('button', { name: 'Put the picture away' }).click();
   return { moved, mm };
+}
+
+/** Of the third retractor: along an arrow of its gizmo, then its pull as a number, which must not be too large. */
+async function changeTheThird(page, { chosen, handle }) {
+  const before = (await chosen())[2];
+  const [arrow, way] = await longestArrow((...mm) => handle(2, ...mm));
+  await drag(page, arrow, way, async () => {
+    await shot(page, 'retractor_moving', { fullPage: false });
+    assert.deepEqual((await chosen())[2], before, 'nothing is chosen before the release');
+  });
+  await waitFor('another place', async () => apart((await chosen())[2].tip_mm, before.tip_mm) > 0.02);
+  const moved = (await chosen())[2];
+  const mm = apart(moved.tip_mm, before.tip_mm);
+  assert.ok(mm < 8, `it was moved by ${mm} mm`);
+  assert.ok(apart(moved.shaft, before.shaft) + apart(moved.flat, before.flat) < 1e-3, 'an arrow turns nothing');
+  const pull = page.getByRole('group', { name: 'Retractor 3' }).getByLabel('Draws the lobe aside by');
+  await pull.fill('16');
+  await page.locator('[id="retractor-2-pull-about"].bad').waitFor(patience);
+  await pull.fill('6.5');
+  await page.keyboard.press('Tab');
+  await waitFor('another pull', async () => (await chosen())[2].pull_mm === 6.5);
+  return mm;
+}
+
+/** A retractor is added by keys, moved by its gizmo, removed by the mouse, and all of that is undone. */
+export async function addARetractor(page) {
+  const chosen = async () => (await project(page, 'narrow_neck')).choices.retractors;
+  const handle = (k, ...mm) => page.evaluate(([n, at]) => window.__retractors.handle(n, at), [k, mm]);
+  const inPicture = () => page.evaluate(() => [window.__retractors.all().length, window.__retractors.chosen()]);
+  const shown = (n) =>
+    waitFor(`${n} retractors`, async () => {
+      const rows = await page.locator('.retractors .rule').count();
+      return rows === n && (await inPicture())[0] === n;
+    });
+  await page.getByRole('button', { name: 'Change the retractors' }).click();
+  await page.waitForFunction(() => window.__retractors?.handle, null, patience);
+  await shown(2);
+  assert.equal(await chosen(), null, 'they are as proposed');
+  await page.getByRole('button', { name: 'Add a retractor' }).focus();
+  await page.keyboard.press('Enter');
+  await shown(3);
+  assert.deepEqual(await inPicture(), [3, 2], 'the new one is chosen');
+  const mm = await changeTheThird(page, { chosen, handle });
+  assert.deepEqual(await axeFinds(page), []);
+  await shot(page, 'retractors', { fullPage: false });
+  await shot(page, 'retractors_page');
+  const blade = await handle(0, 0, 0, 4);
+  await page.mouse.click(...blade);
+  await waitFor('the clicked one', async () => (await inPicture())[1] === 0);
+
+  await page.getByRole('group', { name: 'Retractor 3' }).getByRole('button', { name: 'Remove' }).click();
+  await shown(2);
+  const undo = async () => {
+    await page.locator('.pose-view canvas').focus();
+    await page.keyboard.press('Control+z');
+  };
+  await undo();
+  await shown(3);
+  assert.equal((await chosen())[2].pull_mm, 6.5);
+  for (let k = 0; k < 3; k++) await undo();
+  await waitFor('those of the approach', async () => (await chosen()) === null);
+  await shown(2);
+  const frontal = page.getByRole('group', { name: 'Retractor 2' }).getByLabel('Draws the lobe aside by');
+  await frontal.fill('5.5');
+  await page.keyboard.press('Tab');
+  await waitFor('another pull', async () => (await chosen())?.[1].pull_mm === 5.5);
+  await page.getByRole('button', { name: 'Put the picture away' }).click();
+  return { mm, retractor: (await chosen())[1] };
 }

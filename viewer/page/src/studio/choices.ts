@@ -2,6 +2,7 @@
 // What an author chooses for a case, as the gateway keeps it (viewer/gateway/studio_choices.h).
 import { list, number, numberOrNull, object, text } from '../start/api';
 import type { Point } from './api';
+import { type Retractor, retractorsOf } from './retractors/retractors';
 import { type WallPatch, wallPatchesOf } from './wall_paint/patches';
 
 export type Neck = { plane: number[] } | { points: number[] } | null;
@@ -35,6 +36,8 @@ export interface Choices {
   wallPatches: WallPatch[];
   /** Where the vessel is moved to: a shift in mm, a rotation vector in degrees; null: searched for. */
   pose: number[] | null;
+  /** null: those of the approach. */
+  retractors: Retractor[] | null;
   rehearse: boolean;
   site: string;
   difficulty: number;
@@ -84,6 +87,7 @@ export function choicesOf(value: unknown): Choices {
     walls: Array.isArray(c.walls) ? c.walls.map(text) : [],
     wallPatches: wallPatchesOf(c.wall_patches),
     pose: Array.isArray(c.pose) ? numbers(c.pose) : null,
+    retractors: Array.isArray(c.retractors) ? retractorsOf(c.retractors) : null,
     rehearse: c.rehearse === true,
     site: text(c.site),
     difficulty: number(c.difficulty),

@@ -13,6 +13,7 @@ import { NeckPanel } from './neck_panel';
 import { chosenPlane } from './neck_plane';
 import { PosePanel } from './pose/pose_panel';
 import { ResultPanel } from './result_panel';
+import { RetractorPanel } from './retractors/retractor_panel';
 import { ClipPanel } from './clip/clip_panel';
 import { CutPanel } from './scan/cut_panel';
 import { ScanStep } from './scan/scan_step';
@@ -46,6 +47,7 @@ export class Editor {
   private readonly neck: NeckPanel;
   private readonly scan: ScanStep;
   private readonly pose: PosePanel;
+  private readonly retractors: RetractorPanel;
   private readonly views: Views;
   private shown = '';
   private surface = 0;
@@ -78,6 +80,9 @@ export class Editor {
     this.views = new Views(this.scan.view, this.view.root);
     this.neck = new NeckPanel(asks, this.view, () => this.project && this.mark(this.project));
     this.pose = new PosePanel(asks, api, this.view);
+    this.retractors = new RetractorPanel(asks, api, this.view);
+    this.pose.onBegin = () => this.retractors.end();
+    this.retractors.onBegin = () => this.pose.end();
     this.panels = [
       new FilePanel(asks),
       this.scan,
@@ -91,6 +96,7 @@ export class Editor {
       new WallPanel(asks, scenes),
       new PaintPanel(asks, this.view, scenes),
       this.pose,
+      this.retractors,
     ];
     this.undo.onclick = () => void this.deeds.act('undo');
     this.redo.onclick = () => void this.deeds.act('redo');
@@ -108,6 +114,7 @@ export class Editor {
     this.endKeys();
     this.scan.end();
     this.pose.end();
+    this.retractors.end();
     this.view.end();
   }
 

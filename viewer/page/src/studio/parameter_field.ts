@@ -13,6 +13,8 @@ export interface ParameterValue {
   chosen: string | null;
   /** null: as proposed. */
   choose(value: string | null): void;
+  /** What else is wrong with a value that its declaration allows; '': nothing. */
+  fault?(value: string): string;
 }
 
 /** words: the label, '': the declaration's own, in English. */
@@ -29,7 +31,7 @@ export function parameterField(p: Parameter, id: string, words: string, value: P
     return given && given.unit === '' ? joined({ ...given, unit }) : input.value.trim();
   };
   const tell = () => {
-    const fault = faultOf(p, typed());
+    const fault = faultOf(p, typed()) || (value.fault?.(typed()) ?? '');
     about.className = fault === '' ? 'hint' : 'bad';
     input.setAttribute('aria-invalid', String(fault !== ''));
     const range = rangeText(p);

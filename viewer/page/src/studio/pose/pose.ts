@@ -3,6 +3,7 @@
 import { Quaternion, Vector3 } from 'three';
 import { number, object, text } from '../../start/api';
 import type { Point } from '../api';
+import { type RetractorFacts, retractorFactsOf } from '../retractors/retractors';
 
 /** A shift in mm, then a rotation vector in degrees. */
 export type Pose = number[];
@@ -14,6 +15,7 @@ export interface PoseFacts {
   /** In the vessel's frame. */
   neck: Point;
   toSurgeon: Point;
+  retractors: RetractorFacts | null;
 }
 
 export interface PoseAnswer {
@@ -55,6 +57,7 @@ function factsOf(value: unknown): PoseFacts | null {
     surfaces: f.surfaces.map(text),
     neck: pointOf(f.neck),
     toSurgeon: pointOf(f.to_surgeon),
+    retractors: retractorFactsOf(f.retractors),
   };
 }
 

@@ -6,34 +6,18 @@ import { fixed } from '../../languages/numbers';
 import { text } from '../../languages/text';
 import type { Project, StudioApi } from '../api';
 import type { Asks } from '../editor';
+import { partText } from '../part_words';
 import type { SurfaceView } from '../surface_view';
 import { forThePage, reason } from '../wording';
 import { type Pose, type PoseAnswer, PoseAsker, type PoseFacts, type PoseState, samePose } from './pose';
 import { PoseView } from './pose_view';
 
-function partText(name: string): string {
-  switch (name) {
-    case 'frontal':
-      return text('Frontal lobe');
-    case 'temporal':
-      return text('Temporal lobe');
-    case 'insula':
-      return text('Insula');
-    case 'retractors':
-      return text('Retractors');
-    case 'vessel':
-      return text('The vessel itself');
-    case 'window':
-      return text('Bone');
-    default:
-      return name;
-  }
-}
-
 const howTo = () => text('Drag an arrow, a square or a ring at the neck. Drag beside it to look from elsewhere.');
 
 export class PosePanel {
   readonly root: HTMLElement;
+  /** Before its picture comes: others are to be put away. */
+  onBegin = (): void => undefined;
   private readonly open = el('button', { type: 'button', class: 'pose-open' });
   private readonly move = el('button', { type: 'button' }, text('Move'));
   private readonly turn = el('button', { type: 'button' }, text('Turn'));
@@ -112,6 +96,7 @@ export class PosePanel {
     const { project } = this;
     if (!project?.built) return;
     const { name } = project;
+    this.onBegin();
     this.begun = project.built.number;
     this.asks.toSurface();
     setText(this.say, text('The fissure is being read …'));
