@@ -30,7 +30,7 @@ const units = { thickness: 'mm', young: 'MPa' };
 export class PaintPanel {
   readonly root: HTMLElement;
   private readonly rows = el('div', { class: 'rules' });
-  private readonly fresh = el('button', { type: 'button', class: 'paint-new' });
+  private readonly fresh = el('button', { type: 'button', class: 'paint-new' }, text('Paint a new part'));
   private readonly say = el('p', { class: 'say', role: 'status' });
   private readonly brush: Brush;
   private patches: WallPatch[] = [];
