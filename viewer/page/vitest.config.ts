@@ -3,7 +3,8 @@
 import { defineConfig } from 'vitest/config';
 
 export default defineConfig({
-  test: { include: ['test/*.test.ts'], environment: 'node' },
+  // A slow or busy machine fails no test.
+  test: { include: ['test/*.test.ts'], environment: 'node', testTimeout: 60_000 },
   // Tests read the project's scenes.
   server: { fs: { allow: ['../..'] } },
 });
