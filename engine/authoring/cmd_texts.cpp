@@ -43,7 +43,7 @@ void add_with_name(TextCollector& to, const char* kind, const std::string& text)
   std::smatch parts;
   if (!std::regex_match(text, parts, with_name)) return to.add(kind, text);
   to.add(kind, parts.str(1) + "{name}");
-  to.add("name", spoken_name(parts.str(2)));
+  to.add("name", parts.str(2));
 }
 
 void collect_exercise(TextCollector& to, const Exercise& exercise) {

@@ -12,6 +12,7 @@
 #include "core/mechanics/surface.h"
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
+#include "tools/case_builder/topology.h"
 
 namespace insula::case_builder {
 namespace {
@@ -66,9 +67,9 @@ RetractorAt retractor_of(const Simulation& simulation, const Instrument& arm) {
 TriMesh blade_of(const Instrument& arm) {
   TriMesh out;
   for (const ToolPart& part : arm.tool().parts) {
-    const int first = int(out.vertices.size());
-    for (const Vec3& p : part.mesh.vertices) out.vertices.push_back(1000 * p);
-    for (const auto& t : part.mesh.triangles) out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    TriMesh mesh = part.mesh;
+    for (Vec3& p : mesh.vertices) p *= 1000;
+    append(out, mesh);
   }
   return out;
 }

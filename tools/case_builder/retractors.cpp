@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/params/number.h"
 #include "tools/case_builder/assignment.h"
+#include "tools/case_builder/topology.h"
 #include "tools/case_builder/unit_options.h"
 
 namespace insula::case_builder {
@@ -147,37 +148,26 @@ TriMesh at_place(const TriMesh& blade, const RetractorAt& r) {
 
 TriMesh at_places(const TriMesh& blade, const std::vector<RetractorAt>& retractors) {
   TriMesh out;
-  for (const RetractorAt& r : retractors) {
-    const int first = int(out.vertices.size());
-    const TriMesh one = at_place(blade, r);
-    out.vertices.insert(out.vertices.end(), one.vertices.begin(), one.vertices.end());
-    for (const auto& t : one.triangles) out.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  }
+  for (const RetractorAt& r : retractors) append(out, at_place(blade, r));
   return out;
-}
-
-Json to_json(const RetractorAt& r) {
-  return {{"lobe", r.lobe},
-          {"tip_mm", to_json(r.tip)},
-          {"shaft", to_json(r.shaft)},
-          {"flat", to_json(r.flat)},
-          {"pull_mm", rounded(r.pull)}};
-}
-
-RetractorAt retractor_from(const Json& json) {
-  return {json.at("lobe"), vec3_from(json.at("tip_mm")), vec3_from(json.at("shaft")), vec3_from(json.at("flat")),
-          json.at("pull_mm")};
 }
 
 Json to_json(const std::vector<RetractorAt>& retractors) {
   Json out = Json::array();
-  for (const RetractorAt& r : retractors) out.push_back(to_json(r));
+  for (const RetractorAt& r : retractors)
+    out.push_back({{"lobe", r.lobe},
+                   {"tip_mm", to_json(r.tip)},
+                   {"shaft", to_json(r.shaft)},
+                   {"flat", to_json(r.flat)},
+                   {"pull_mm", rounded(r.pull)}});
   return out;
 }
 
 std::vector<RetractorAt> retractors_from(const Json& json) {
   std::vector<RetractorAt> out;
-  for (const Json& r : json) out.push_back(retractor_from(r));
+  for (const Json& r : json)
+    out.push_back(
+        {r.at("lobe"), vec3_from(r.at("tip_mm")), vec3_from(r.at("shaft")), vec3_from(r.at("flat")), r.at("pull_mm")});
   return out;
 }
 

@@ -37,9 +37,7 @@ TriMesh at_place(const TriMesh& blade, const RetractorAt& retractor);
 /// All of them.
 TriMesh at_places(const TriMesh& blade, const std::vector<RetractorAt>& retractors);
 
-/// {lobe, tip_mm, shaft, flat, pull_mm}
-Json to_json(const RetractorAt& retractor);
-RetractorAt retractor_from(const Json& json);
+/// [{lobe, tip_mm, shaft, flat, pull_mm}]
 Json to_json(const std::vector<RetractorAt>& retractors);
 std::vector<RetractorAt> retractors_from(const Json& json);
 

@@ -12,6 +12,7 @@
 #include "core/mechanics/surface.h"
 #include "core/sim/report.h"
 #include "tools/case_builder/solid.h"
+#include "tools/case_builder/topology.h"
 
 namespace insula::case_builder {
 namespace {
@@ -32,9 +33,9 @@ TriMesh now(const Surface& s) { return in_mm(s.positions(), s.triangles()); }
 TriMesh now(const Instrument& tool) {
   TriMesh m;
   for (const ToolPart& part : tool.tool().parts) {
-    const int first = int(m.vertices.size());
-    for (const Vec3& p : part.mesh.vertices) m.vertices.push_back(1000 * tool.pose().apply(p));
-    for (const auto& t : part.mesh.triangles) m.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    TriMesh mesh = part.mesh;
+    for (Vec3& p : mesh.vertices) p = 1000 * tool.pose().apply(p);
+    append(m, mesh);
   }
   return m;
 }

@@ -225,6 +225,12 @@ double area(const TriMesh& m) {
   return sum;
 }
 
+void append(TriMesh& to, const TriMesh& more) {
+  const int first = int(to.vertices.size());
+  to.vertices.insert(to.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (const auto& t : more.triangles) to.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+}
+
 double signed_volume(const TriMesh& m) {
   double sum = 0;
   if (m.vertices.empty()) return 0;

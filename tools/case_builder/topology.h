@@ -37,6 +37,8 @@ int part_fans(TriMesh& mesh);
 /// own).
 std::vector<std::vector<int>> border_loops(const TriMesh& mesh);
 
+/// Adds the vertices and triangles of another mesh.
+void append(TriMesh& to, const TriMesh& more);
 double area(const TriMesh& mesh);
 double signed_volume(const TriMesh& mesh);
 void turn_inside_out(TriMesh& mesh);
