@@ -6,7 +6,8 @@ import { Vector3 } from 'three';
 import { Block, scanFactsOf } from '../src/studio/scan/block';
 import { cutThrough, otherSide, partBeyond, smallerSide } from '../src/studio/scan/cut_plane';
 import { surfaceNet } from '../src/studio/scan/surface_net';
-import { mostNodes, type Vec, vesselGrid, type Wanted } from '../src/studio/scan/vessel_grid';
+import { SampledScan, type Stored, type Vec } from '../src/studio/scan/sampled_scan';
+import { mostNodes, vesselGrid, type Wanted } from '../src/studio/scan/vessel_grid';
 
 function voxels(size: Vec, value: (i: number, j: number, k: number) => number): Int16Array {
   const out = new Int16Array(size[0] * size[1] * size[2]);
@@ -15,6 +16,8 @@ function voxels(size: Vec, value: (i: number, j: number, k: number) => number): 
     for (let j = 0; j < size[1]; j++) for (let i = 0; i < size[0]; i++) out[n++] = value(i, j, k);
   return out;
 }
+
+const gridOf = (stored: Stored, size: Vec, wanted: Wanted) => vesselGrid(new SampledScan(stored, size), wanted);
 
 const whole = (size: Vec, more: Partial<Wanted> = {}): Wanted => ({
   threshold: 50,
@@ -37,17 +40,17 @@ const balls = voxels(size, (i, j, k) => {
 it('keeps the largest piece, or the one at the seed', () => {
   const volume = (r: number) => (4 / 3) * Math.PI * r ** 3;
   const count = (part: Uint8Array, mark: number) => part.reduce((n, p) => n + (p === mark ? 1 : 0), 0);
-  const largest = vesselGrid(balls, size, whole(size));
+  const largest = gridOf(balls, size, whole(size));
   expect(count(largest.part, 1) / volume(9)).toBeCloseTo(1, 1);
   expect(count(largest.part, 2) / volume(6)).toBeCloseTo(1, 1);
-  const seeded = vesselGrid(balls, size, whole(size, { seed: [12, 20, 15] }));
+  const seeded = gridOf(balls, size, whole(size, { seed: [12, 20, 15] }));
   expect(count(seeded.part, 1)).toBe(count(largest.part, 2));
-  const none = vesselGrid(balls, size, whole(size, { threshold: 9999 }));
+  const none = gridOf(balls, size, whole(size, { threshold: 9999 }));
   expect(count(none.part, 0)).toBe(none.part.length);
 });
 
 it('makes a closed surface that faces outward, of the right volume', () => {
-  const grid = vesselGrid(balls, size, whole(size));
+  const grid = gridOf(balls, size, whole(size));
   const { positions, triangles } = surfaceNet(grid.size, grid.level);
   const p = (v: number) => [0, 1, 2].map((a) => positions[3 * v + a]!) as Vec;
   const uses = new Map<string, number>();
@@ -75,7 +78,7 @@ it('makes a closed surface that faces outward, of the right volume', () => {
 
 it('closes a vessel that leaves the scan', () => {
   const tube = voxels([20, 12, 12], (_i, j, k) => 50 - 10 * (Math.hypot(j - 6, k - 6) - 3));
-  const grid = vesselGrid(tube, [20, 12, 12], whole([20, 12, 12]));
+  const grid = gridOf(tube, [20, 12, 12], whole([20, 12, 12]));
   const { positions } = surfaceNet(grid.size, grid.level);
   const xs = positions.filter((_x, n) => n % 3 === 0);
   expect(Math.min(...xs)).toBeLessThan(0);
@@ -84,9 +87,9 @@ it('closes a vessel that leaves the scan', () => {
 
 it('chooses a label and a part', () => {
   const labels = voxels([20, 10, 10], (i) => (i < 5 ? 1 : i < 15 ? 2 : 0));
-  const grid = vesselGrid(labels, [20, 10, 10], whole([20, 10, 10], { label: 2 }));
+  const grid = gridOf(labels, [20, 10, 10], whole([20, 10, 10], { label: 2 }));
   expect(grid.part.filter((p) => p === 1).length).toBe(1000);
-  const near = vesselGrid(labels, [20, 10, 10], whole([20, 10, 10], { label: 2, from: [3, 0, 0], to: [8, 9, 9] }));
+  const near = gridOf(labels, [20, 10, 10], whole([20, 10, 10], { label: 2, from: [3, 0, 0], to: [8, 9, 9] }));
   expect(near.size).toEqual([6, 10, 10]);
   expect(near.part.filter((p) => p === 1).length).toBe(400);
 });
@@ -98,7 +101,7 @@ it('paints and erases balls along lines', () => {
     [35, 15, 15],
   ];
   const empty = whole(size, { threshold: 1e6, strokes: [{ erase: false, radius: 3, points }] });
-  const kept = (w: Wanted) => vesselGrid(balls, size, w).part.reduce((n, p) => n + (p === 1 ? 1 : 0), 0);
+  const kept = (w: Wanted) => gridOf(balls, size, w).part.reduce((n, p) => n + (p === 1 ? 1 : 0), 0);
   expect(Math.abs(kept(empty) / volume - 1)).toBeLessThan(0.15); // nodes on the border are not inside
   expect(Math.abs(kept({ ...empty, spacing: [1, 1, 0.5] }) / (2 * volume) - 1)).toBeLessThan(0.15);
   expect(kept({ ...empty, strokes: [...empty.strokes, { erase: true, radius: 4, points }] })).toBe(0);
@@ -107,17 +110,26 @@ it('paints and erases balls along lines', () => {
   expect(kept(whole(size, { strokes: empty.strokes }))).toBeGreaterThan(plain + 900);
 });
 
-/** A move of the threshold looks at each node once, at those of vessels twice more, and at no more than so many. */
+/** A move of the threshold reads no voxel again, looks at each node once, and at those of vessels twice more. */
 it('does a bounded work for each move of the threshold', () => {
   const large: Vec = [256, 256, 150];
   const stored = voxels(
     large,
     (i, j, k) => ((i * 7 + j * 13 + k * 29) % 100) + (Math.hypot(j - 128, k - 75) < 9 ? 100 : 0),
   );
-  const grid = vesselGrid(stored, large, whole(large, { threshold: 100 }));
+  const scan = new SampledScan(stored, large);
+  vesselGrid(scan, whole(large, { threshold: 90 }));
+  expect(scan.read).toBe(stored.length);
+  const grid = vesselGrid(scan, whole(large, { threshold: 100 }));
+  expect(scan.read).toBe(stored.length);
+  const anew = gridOf(stored, large, whole(large, { threshold: 100 }));
+  expect(anew.level.findIndex((v, n) => v !== grid.level[n])).toBe(-1);
   expect(Math.max(...grid.size)).toBeLessThanOrEqual(mostNodes);
   expect(grid.step).toBe(2);
   expect(grid.work).toBeLessThanOrEqual(3 * grid.level.length);
+  vesselGrid(scan, whole(large, { threshold: 100, label: 7 }));
+  vesselGrid(scan, whole(large, { threshold: 100 }));
+  expect(scan.read).toBe(3 * stored.length);
 });
 
 it('knows where voxels lie', () => {

@@ -4,6 +4,8 @@
 import { list, number, object, text } from '../../start/api';
 
 export type Vec = [number, number, number];
+type Row = [number, number, number, number];
+type Twelve = [...Row, ...Row, ...Row];
 
 export interface ScanFacts {
   size: Vec;
@@ -100,6 +102,10 @@ export class Block {
   valueAt([i, j, k]: Vec): number {
     const { scale, offset } = this.facts.block;
     return offset + scale * this.stored[this.index(i, j, k)]!;
+  }
+  /** From voxels to the world: three rows of four. */
+  toWorld(): Twelve {
+    return this.m as Twelve;
   }
   world([i, j, k]: Vec): Vec {
     const { m } = this;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finds the vessel in a scan and its surface, beside the page's own thread.
+import { SampledScan, type Stored, type Vec } from './sampled_scan';
 import { surfaceNet } from './surface_net';
-import { type Stored, type Vec, vesselGrid, type VesselGrid, type Wanted } from './vessel_grid';
+import { vesselGrid, type VesselGrid, type Wanted } from './vessel_grid';
 
 export type Ask = { stored: Stored; size: Vec } | { wanted: Wanted };
 
@@ -12,16 +13,16 @@ export interface Preview {
   ms: number;
 }
 
-let scan: { stored: Stored; size: Vec } | null = null;
+let scan: SampledScan | null = null;
 
 self.onmessage = ({ data }: MessageEvent<Ask>) => {
   if ('stored' in data) {
-    scan = data;
+    scan = new SampledScan(data.stored, data.size);
     return;
   }
   if (!scan) return;
   const began = performance.now();
-  const { size, step, from, part, level } = vesselGrid(scan.stored, scan.size, data.wanted);
+  const { size, step, from, part, level } = vesselGrid(scan, data.wanted);
   const { positions, triangles } = surfaceNet(size, level);
   const answer: Preview = { grid: { size, step, from, part }, positions, triangles, ms: performance.now() - began };
   self.postMessage(answer, { transfer: [part.buffer, positions.buffer, triangles.buffer] });

@@ -7,8 +7,9 @@ import {
   Color,
   DirectionalLight,
   DoubleSide,
+  Matrix4,
   Mesh,
-  MeshStandardMaterial,
+  MeshLambertMaterial,
   PerspectiveCamera,
   Scene,
   Vector3,
@@ -17,7 +18,7 @@ import {
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { el } from '../../hud/dom';
 import { text } from '../../languages/text';
-import type { Block } from './block';
+import type { Block, Vec } from './block';
 import type { Preview } from './preview.worker';
 
 const fieldOfView = 35;
@@ -31,7 +32,8 @@ export class PreviewView {
   private readonly controls: OrbitControls;
   private readonly mesh = new Mesh(
     new BufferGeometry(),
-    new MeshStandardMaterial({ color: '#ff6f5a', roughness: 0.6, side: DoubleSide }),
+    // Its cost counts where the browser draws without a graphics processor.
+    new MeshLambertMaterial({ color: '#ff6f5a', side: DoubleSide }),
   );
   private box = '';
 
@@ -41,6 +43,7 @@ export class PreviewView {
     const lamp = new DirectionalLight('#ffffff', 2.2);
     this.camera.add(lamp);
     this.scene.add(this.camera, new AmbientLight('#ffffff', 0.7), this.mesh);
+    this.mesh.matrixAutoUpdate = false;
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.addEventListener('change', () => this.draw());
     this.controls.listenToKeyEvents(this.canvas);
@@ -52,20 +55,21 @@ export class PreviewView {
     this.renderer.dispose();
   }
 
+  /** Drawn with the next frame. */
   show({ grid, positions, triangles }: Preview): void {
-    const world = new Float32Array(positions.length);
-    const inner = (grid.step - 1) / 2;
-    const at = (n: number, a: 0 | 1 | 2) => grid.from[a] + positions[n + a]! * grid.step + inner;
-    for (let n = 0; n < positions.length; n += 3) world.set(this.block.world([at(n, 0), at(n, 1), at(n, 2)]), n);
+    // Positions are in nodes of the grid.
+    const { step, from } = grid;
+    const [x, y, z] = from.map((voxel) => voxel + (step - 1) / 2) as Vec;
+    const nodes = new Matrix4().makeScale(step, step, step).setPosition(x, y, z);
+    this.mesh.matrix.set(...this.block.toWorld(), 0, 0, 0, 1).multiply(nodes);
     this.mesh.geometry.dispose();
     this.mesh.geometry = new BufferGeometry();
-    this.mesh.geometry.setAttribute('position', new BufferAttribute(world, 3));
+    this.mesh.geometry.setAttribute('position', new BufferAttribute(positions, 3));
     this.mesh.geometry.setIndex(new BufferAttribute(triangles, 1));
     this.mesh.geometry.computeVertexNormals();
     const box = JSON.stringify([grid.from, grid.size, grid.step]);
     if (box !== this.box) this.stand(grid);
     this.box = box;
-    this.draw();
   }
 
   /** Sees the part that is taken from the front. */

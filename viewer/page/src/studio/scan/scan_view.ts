@@ -15,10 +15,14 @@ export class ScanView {
   private readonly slices: SliceView[];
   private readonly preview: PreviewView;
   private readonly worker = new Worker(new URL('./preview.worker.ts', import.meta.url), { type: 'module' });
-  private readonly watch = new ResizeObserver(() => this.draw());
+  private readonly watch = new ResizeObserver(() => {
+    this.previewChanged = true;
+    this.draw();
+  });
   private asked = '';
   private busy = false;
   private waiting = false;
+  private previewChanged = false;
 
   constructor(
     block: Block,
@@ -64,6 +68,7 @@ export class ScanView {
     this.busy = false;
     this.state.found = found;
     this.preview.show(found);
+    this.previewChanged = true;
     this.changed();
   }
 
@@ -74,7 +79,8 @@ export class ScanView {
     requestAnimationFrame(() => {
       this.waiting = false;
       for (const slice of this.slices) slice.draw();
-      this.preview.draw();
+      if (this.previewChanged) this.preview.draw();
+      this.previewChanged = false;
     });
   }
 }

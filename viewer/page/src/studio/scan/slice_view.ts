@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One slice of a scan, as radiologists see it: right and front on the left, up and front on top. What would be vessel
-// is coloured.
+// One slice of a scan, as radiologists see it: right and front on the left, up and front on top.
 import { el } from '../../hud/dom';
 import { text } from '../../languages/text';
-import type { Block, Vec } from './block';
+import type { Block } from './block';
+import type { Preview } from './preview.worker';
 import type { ScanState } from './scan_state';
+import { slicePixels } from './slice_pixels';
 
 /** Axes of the page's directions, and letters of its sides. */
 const views = [
@@ -12,9 +13,6 @@ const views = [
   { u: 0, v: 2, sides: ['R', 'L', 'S', 'I'] },
   { u: 0, v: 1, sides: ['R', 'L', 'A', 'P'] },
 ] as const;
-const kept = [255, 90, 70];
-const left = [90, 150, 255]; // other pieces
-const tint = 0.5;
 const pageOfSlices = 10;
 const perPixel = 1 / 300; // of the range of values, for a drag
 
@@ -26,6 +24,8 @@ export class SliceView {
   private readonly image = document.createElement('canvas');
   private readonly view: (typeof views)[number];
   private readonly where = el('span', {});
+  private painted = '';
+  private found: Preview | null = null;
 
   constructor(
     /** Of the direction through the slices. */
@@ -132,45 +132,15 @@ export class SliceView {
     this.marks(context, f, ratio);
   }
 
-  /** The slice, a pixel each voxel. */
+  /** The slice, unless it is painted already. */
   private paint(): void {
-    const { block } = this.state;
-    const { u, v } = this.view;
-    const [nu, nv] = [block.size[u], block.size[v]];
-    if (this.image.width !== nu || this.image.height !== nv) [this.image.width, this.image.height] = [nu, nv];
-    const context = this.image.getContext('2d')!;
-    const pixels = context.createImageData(nu, nv);
-    const at: [number, number, number] = [...this.state.cross];
-    const wanted = this.state.wanted();
-    const [low, high] = [block.storedOf(this.state.low), block.storedOf(this.state.high)];
-    // What was painted is known on the nodes of the preview.
-    const painted = wanted.strokes.length > 0 && this.state.found !== null;
-    let to = 0;
-    for (let y = nv - 1; y >= 0; y--)
-      for (let x = nu - 1; x >= 0; x--, to += 4) {
-        at[u] = x;
-        at[v] = y;
-        const stored = block.stored[block.index(...at)]!;
-        const grey = Math.min(255, Math.max(0, (255 * (stored - low)) / (high - low)));
-        const vessel = wanted.label === null ? stored >= wanted.threshold : stored === wanted.label;
-        const colour = vessel || painted ? this.colour(at, wanted.from, wanted.to, painted) : null;
-        for (let c = 0; c < 3; c++) pixels.data[to + c] = colour ? grey * (1 - tint) + colour[c]! * tint : grey;
-        pixels.data[to + 3] = 255;
-      }
-    context.putImageData(pixels, 0, 0);
-  }
-
-  /** Of a voxel above the threshold, or by its node alone; null: outside of the part that is taken. */
-  private colour(at: Readonly<Vec>, from: Readonly<Vec>, to: Readonly<Vec>, byNode: boolean): number[] | null {
-    for (let a = 0; a < 3; a++) if (at[a]! < from[a]! || at[a]! > to[a]!) return null;
-    const grid = this.state.found?.grid;
-    if (!grid) return kept;
-    const node = at.map((x, a) =>
-      Math.min(grid.size[a]! - 1, Math.max(0, Math.floor((x - grid.from[a]!) / grid.step))),
-    );
-    const part = grid.part[node[0]! + grid.size[0] * (node[1]! + grid.size[1] * node[2]!)];
-    if (byNode && part === 0) return null;
-    return part === 2 ? left : kept;
+    const { state, axis } = this;
+    const shown = JSON.stringify([state.cross[axis], state.low, state.high, state.wanted()]);
+    if (shown === this.painted && state.found === this.found) return;
+    [this.painted, this.found] = [shown, state.found];
+    const pixels = slicePixels(state, axis, this.view);
+    [this.image.width, this.image.height] = [pixels.width, pixels.height];
+    this.image.getContext('2d')!.putImageData(pixels, 0, 0);
   }
 
   private marks(context: CanvasRenderingContext2D, f: ReturnType<SliceView['frame']>, ratio: number): void {

@@ -9,9 +9,9 @@ export interface Net {
 }
 
 const corners = [0, 1, 2, 3, 4, 5, 6, 7] as const;
-/** Pairs of corners, bits: x, y, z. */
-const edges: readonly (readonly [number, number])[] = corners.flatMap((c) =>
-  [1, 2, 4].filter((bit) => (c & bit) === 0).map((bit) => [c, c | bit] as const),
+/** Pairs of corners, one after the other; bits: x, y, z. */
+const edges = Uint8Array.from(
+  corners.flatMap((c) => [1, 2, 4].filter((bit) => (c & bit) === 0).flatMap((bit) => [c, c | bit])),
 );
 
 class Growing {
@@ -22,14 +22,20 @@ class Growing {
 
   point(x: number, y: number, z: number): number {
     if (3 * this.points + 3 > this.positions.length) this.positions = Growing.twice(this.positions);
-    this.positions.set([x, y, z], 3 * this.points);
+    const n = 3 * this.points;
+    [this.positions[n], this.positions[n + 1], this.positions[n + 2]] = [x, y, z];
     return this.points++;
   }
   /** Four points around an edge, turned so that the triangles face outward. */
   quad(a: number, b: number, c: number, d: number, turned: boolean): void {
     if (this.corners + 6 > this.triangles.length) this.triangles = Growing.twice(this.triangles);
-    this.triangles.set(turned ? [a, b, c, a, c, d] : [a, d, c, a, c, b], this.corners);
-    this.corners += 6;
+    this.triangle(a, turned ? b : d, c);
+    this.triangle(a, c, turned ? d : b);
+  }
+  private triangle(a: number, b: number, c: number): void {
+    const n = this.corners;
+    [this.triangles[n], this.triangles[n + 1], this.triangles[n + 2]] = [a, b, c];
+    this.corners += 3;
   }
   private static twice<T extends Float32Array | Uint32Array>(old: T): T {
     const out = new (old.constructor as new (n: number) => T)(2 * old.length);
@@ -42,6 +48,9 @@ class Growing {
 class Padded {
   readonly across: readonly [number, number, number];
   readonly values: Float32Array;
+  private readonly offsets: readonly number[];
+  private readonly corner = new Float64Array(8);
+  private readonly mean = new Float64Array(3);
 
   constructor(
     readonly size: readonly [number, number, number],
@@ -49,6 +58,7 @@ class Padded {
   ) {
     const [nx, ny, nz] = size;
     this.across = [1, nx + 2, (nx + 2) * (ny + 2)];
+    this.offsets = corners.map((c) => this.index(c & 1, (c >> 1) & 1, c >> 2));
     this.values = new Float32Array((nx + 2) * (ny + 2) * (nz + 2)).fill(-1);
     for (let k = 0; k < nz; k++)
       for (let j = 0; j < ny; j++) {
@@ -59,24 +69,24 @@ class Padded {
   index(i: number, j: number, k: number): number {
     return i + this.across[1] * j + this.across[2] * k;
   }
-  /** Of the cell whose first corner is node n: the mean of where the border crosses its edges. */
-  crossing(n: number): readonly [number, number, number] {
-    const v = corners.map((c) => this.values[n + this.offset(c)]!);
-    const sum = [0, 0, 0] as [number, number, number];
-    let count = 0;
-    for (const [a, b] of edges) {
-      if (v[a]! > 0 === v[b]! > 0) continue;
-      const t = v[a]! / (v[a]! - v[b]!);
-      for (const axis of [0, 1, 2] as const) {
-        const [from, to] = [(a >> axis) & 1, (b >> axis) & 1];
-        sum[axis] += from + t * (to - from);
-      }
+  /** Of the cell at node n: the mean of where the border crosses its edges. It holds until the next call. */
+  crossing(n: number): Float64Array {
+    const { values, offsets, corner, mean } = this;
+    for (let c = 0; c < 8; c++) corner[c] = values[n + offsets[c]!]!;
+    let [x, y, z, count] = [0, 0, 0, 0];
+    for (let e = 0; e < edges.length; e += 2) {
+      const [a, b] = [edges[e]!, edges[e + 1]!];
+      const [va, vb] = [corner[a]!, corner[b]!];
+      if (va > 0 === vb > 0) continue;
+      const t = va / (va - vb);
+      const bit = a ^ b;
+      x += bit === 1 ? t : a & 1;
+      y += bit === 2 ? t : (a >> 1) & 1;
+      z += bit === 4 ? t : a >> 2;
       count++;
     }
-    return [sum[0] / count, sum[1] / count, sum[2] / count];
-  }
-  private offset(corner: number): number {
-    return (corner & 1) + this.across[1] * ((corner >> 1) & 1) + this.across[2] * (corner >> 2);
+    [mean[0], mean[1], mean[2]] = [x / count, y / count, z / count];
+    return mean;
   }
 }
 
@@ -103,9 +113,9 @@ export function surfaceNet(size: readonly [number, number, number], values: Floa
         const right = side(grid, row + i + 1);
         const even = left === right && (left === 0 || left === 15);
         if (!even) {
-          const [x, y, z] = grid.crossing(row + i);
+          const at = grid.crossing(row + i);
           const c = i + width * j;
-          here[c] = out.point(i + x - 1, j + y - 1, k + z - 1);
+          here[c] = out.point(i + at[0]! - 1, j + at[1]! - 1, k + at[2]! - 1);
           const inside = (left & 1) === 1;
           // Edges that begin at the cell's first corner have all four cells behind them.
           if (inside !== ((right & 1) === 1)) out.quad(here[c], here[c - width]!, below[c - width]!, below[c]!, inside);

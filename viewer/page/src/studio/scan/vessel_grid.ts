@@ -2,8 +2,7 @@
 // What of a scan is vessel, on the nodes of a coarser grid: the connected part that the case builder would keep
 // (tools/case_builder/grid_surface.cpp).
 
-export type Vec = [number, number, number];
-export type Stored = Uint8Array | Int16Array;
+import { SampledScan, type Vec } from './sampled_scan';
 
 /** What the author has chosen, in voxels of the block and in stored values. */
 export interface Wanted {
@@ -32,32 +31,20 @@ export interface VesselGrid {
   level: Float32Array;
   /** 1: kept, 2: vessel too, but another piece. */
   part: Uint8Array;
-  /** Nodes that were looked at, and those that were looked at for their neighbours: what a move costs. */
+  /** Nodes that were looked at, and those that were looked at for their neighbours. */
   work: number;
 }
 
-/** The brightest voxel of each node: thin vessels stay connected. */
-function sampled(stored: Stored, size: Vec, w: Wanted, grid: VesselGrid): void {
-  const [nx, ny] = size;
-  const { step, from, level } = grid;
-  const soft = 1 / Math.max(1, Math.abs(w.threshold) / 4);
-  let n = 0;
-  for (let k = 0; k < grid.size[2]; k++)
-    for (let j = 0; j < grid.size[1]; j++)
-      for (let i = 0; i < grid.size[0]; i++, n++) {
-        let most = -Infinity;
-        for (let c = 0; c < step; c++)
-          for (let b = 0; b < step; b++) {
-            const row = from[0] + i * step + nx * (from[1] + j * step + b + ny * (from[2] + k * step + c));
-            for (let a = 0; a < step; a++) {
-              const v = stored[row + a]!;
-              const s = w.label === null ? v : v === w.label ? 1 : 0;
-              if (s > most) most = s;
-            }
-          }
-        const over = w.label === null ? (most - w.threshold) * soft : most - 0.5;
-        level[n] = over === 0 ? 1e-6 : Math.min(1, Math.max(-1, over));
-      }
+/** Above 0 where a node's brightest voxel is vessel. */
+function compare(scan: SampledScan, w: Wanted, grid: VesselGrid): void {
+  const { step, size, from, level } = grid;
+  const most = scan.brightest({ from, size, step, label: w.label });
+  const limit = w.label === null ? w.threshold : 0.5;
+  const soft = w.label === null ? 1 / Math.max(1, Math.abs(w.threshold) / 4) : 1;
+  for (let n = 0; n < level.length; n++) {
+    const over = (most[n]! - limit) * soft;
+    level[n] = over === 0 ? 1e-6 : over > 1 ? 1 : over < -1 ? -1 : over;
+  }
 }
 
 /** Sets or clears what lies within a stroke's radius of the line between two of its points. */
@@ -159,7 +146,7 @@ function keepOne(grid: VesselGrid, seed: Vec | null): void {
     }
 }
 
-export function vesselGrid(stored: Stored, size: Vec, wanted: Wanted): VesselGrid {
+export function vesselGrid(scan: SampledScan, wanted: Wanted): VesselGrid {
   const span = wanted.to.map((x, a) => x - wanted.from[a]! + 1);
   const step = Math.max(1, Math.ceil(Math.max(...span) / mostNodes));
   const nodes = span.map((n) => Math.max(1, Math.floor(n / step))) as Vec;
@@ -172,7 +159,7 @@ export function vesselGrid(stored: Stored, size: Vec, wanted: Wanted): VesselGri
     part: new Uint8Array(count),
     work: count,
   };
-  sampled(stored, size, wanted, grid);
+  compare(scan, wanted, grid);
   paint(grid, wanted);
   keepOne(grid, wanted.seed);
   return grid;
