@@ -84,25 +84,35 @@ std::array<double, 2> ArachnoidMembrane::standing_part(const Piece& piece) const
   return {strands->severed(piece.pair.first) ? 0.5 : 0.0, strands->severed(piece.pair.second) ? 0.5 : 1.0};
 }
 
-ArachnoidMembrane::Deepest ArachnoidMembrane::deepest(const Piece& piece, const BilinearPatch& patch,
-                                                      const ToolOutline& tool, int side) const {
+/// The lowest point of the tool above the patch (side 1), or the highest of it (side -1).
+ArachnoidMembrane::Deepest ArachnoidMembrane::deepest_from(int side, const Piece& piece, const BilinearPatch& patch,
+                                                           const ToolOutline& tool) const {
   const auto [from, to] = standing_part(piece);
-  Deepest below, above;  // the lowest point of the tool above the patch, the highest of it
-  below.gap = above.gap = infinite;
+  Deepest out;
+  out.gap = infinite;
+  const BilinearPatch::Slab slab(patch);
   const Vec3 middle = patch.middle();
   const double radius = patch.radius();
   for (const ToolOutline::Ball& ball : tool.balls()) {
     if ((ball.at - middle).norm() > radius + aware + ball.radius) continue;
+    if (slab.least_height(ball.at, side) > std::min(out.gap, aware) + ball.radius) continue;
     BilinearPatch::Foot foot;
     if (!patch.foot(ball.at, foot)) continue;
     if (foot.s < from || foot.s > to || foot.t < 0 || foot.t > 1 || std::abs(foot.height) > aware + ball.radius)
       continue;
-    if (foot.height - ball.radius < below.gap) below = {1, foot.height - ball.radius, &ball, foot};
-    if (-foot.height - ball.radius < above.gap) above = {-1, -foot.height - ball.radius, &ball, foot};
+    const double gap = side * foot.height - ball.radius;
+    if (gap < out.gap) out = {side, gap, &ball, foot};
   }
-  if (side == 0) side = below.gap > 0 ? 1 : above.gap > 0 ? -1 : 0;
-  if (side > 0) return below;
-  if (side < 0) return above;
+  return out;
+}
+
+ArachnoidMembrane::Deepest ArachnoidMembrane::deepest(const Piece& piece, const BilinearPatch& patch,
+                                                      const ToolOutline& tool, int side) const {
+  if (side != 0) return deepest_from(side, piece, patch, tool);
+  Deepest below = deepest_from(1, piece, patch, tool);
+  if (below.gap > 0) return below;
+  const Deepest above = deepest_from(-1, piece, patch, tool);
+  if (above.gap > 0) return above;
   below.side = 0;
   return below;
 }
@@ -135,7 +145,13 @@ void ArachnoidMembrane::find_edge(const Piece& piece, const BilinearPatch& patch
     tent.edge_foot = foot;
     tent.edge_at = at;
   };
+  const BilinearPatch::Slab slab(patch);
   for (const ToolOutline::Ball& b : tool.edge()) {
+    // From here, neither this point nor the edge on either side of it reaches the patch.
+    if (slab.least_distance(b.at) > std::max(best, outline_step)) {
+      known = false;
+      continue;
+    }
     BilinearPatch::Foot foot;
     const bool found = patch.foot(b.at, foot);
     if (found) take(b.at, foot);

@@ -143,6 +143,7 @@ class ArachnoidMembrane final : public Constraint, public StatesLaw {
 
   BilinearPatch patch(const Piece& piece) const;
   std::array<double, 2> standing_part(const Piece& piece) const;
+  Deepest deepest_from(int side, const Piece& piece, const BilinearPatch& patch, const ToolOutline& tool) const;
   Deepest deepest(const Piece& piece, const BilinearPatch& patch, const ToolOutline& tool, int side) const;
   void find_edge(const Piece& piece, const BilinearPatch& patch, const ToolOutline& tool, Tent& tent) const;
   void touch(const Piece& piece, const BilinearPatch& patch, const ToolOutline& tool, Tent& tent) const;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/base/math.h"
 
@@ -69,6 +70,30 @@ struct BilinearPatch {
     }
     return false;
   }
+
+  /// A cheap bound: how far the patch is at least from points beside it.
+  class Slab {
+   public:
+    explicit Slab(const BilinearPatch& patch)
+        : middle_(patch.middle()), normal_(patch.normal(0.5, 0.5)), depth_(patch.twist().norm() / 4) {
+      // A strongly twisted patch has no side.
+      for (const double s : {0.0, 1.0})
+        for (const double t : {0.0, 1.0})
+          if (!(patch.normal(s, t).dot(normal_) > 0)) depth_ = std::numeric_limits<double>::infinity();
+    }
+    /// A foot of p within the patch has at least this height, in the direction of the normal (sign 1) or against it
+    /// (sign -1). Minus infinity: unknown.
+    double least_height(const Vec3& p, int sign) const {
+      const double height = sign * (p - middle_).dot(normal_) - depth_;
+      return height > 0 ? height : -std::numeric_limits<double>::infinity();
+    }
+    /// A foot of p within the patch is at least so far away.
+    double least_distance(const Vec3& p) const { return std::max(0.0, std::abs((p - middle_).dot(normal_)) - depth_); }
+
+   private:
+    Vec3 middle_, normal_;
+    double depth_;  ///< half of the thickness of the slab that holds the patch, m
+  };
 
  private:
   Vec3 twist() const { return corner[0] - corner[1] - corner[2] + corner[3]; }  ///< d2x / ds dt
