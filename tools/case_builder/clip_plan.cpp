@@ -16,21 +16,30 @@ namespace insula::case_builder {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double half_blade = 0.7;  // mm: of a blade's width, with what lies between two vertices of the wall
-constexpr double yields = 1;        // mm by which the sac lets itself be pressed in by an open blade
-constexpr double past = 1.5;        // mm that the tips go beyond the flattened neck
-constexpr double off_floor = 0.4;   // mm that they keep from the floor, half their own width included
+constexpr double half_blade = 0.7;      // mm: of a blade's width, with what lies between two vertices of the wall
+constexpr double yields = 1;            // mm by which the sac lets itself be pressed in by an open blade
+constexpr double past = 1.5;            // mm that the tips go beyond the flattened neck
+constexpr double off_floor = 0.4;       // mm that they keep from the floor, half their own width included
+constexpr double off_floor_open = 0.2;  // the same while they are open, for a short time
 
 Vec3 across(const Vec3& a, const Vec3& n) { return (a - a.dot(n) * n).normalized(); }
 
-/// How far blades with their middle there have to be drawn back before their outer half is clear of the floor.
-double way_back(const Solid& floor, const ClipShape& clip, const Vec3& middle, const Vec3& inward) {
+/// How far blades with their middle there have to be drawn back before their outer half is clear of the floor, shut and
+/// open. inward, closing: unit.
+double way_back(const Solid& floor, const ClipShape& clip, const Vec3& middle, const Vec3& inward,
+                const Vec3& closing) {
   constexpr double farthest = 6, step = 0.1;
+  const auto clear_of_floor = [&](const Vec3& p, double by) {
+    const Nearest n = floor.nearest(p, farthest);
+    return !(n.found && n.distance < by);
+  };
   for (double back = 0; back < farthest; back += step) {
     bool clear = true;
     for (const double along : {0.0, 0.25, 0.5}) {
-      const Nearest n = floor.nearest(middle + (along * clip.blade - back) * inward, farthest);
-      clear = clear && !(n.found && n.distance < off_floor);
+      const Vec3 p = middle + (along * clip.blade - back) * inward;
+      const double aside = clip.half_open((clip.middle + along * clip.blade * clip.inward).z());
+      clear = clear && clear_of_floor(p, off_floor) && clear_of_floor(p + aside * closing, off_floor_open) &&
+              clear_of_floor(p - aside * closing, off_floor_open);
     }
     if (clear) return back;
   }
@@ -185,7 +194,7 @@ std::vector<ClipPlan> clip_plans(const artery::Vessel& v, const Solid& floor, co
       if (!o.clip.empty() ? clip.name != o.clip : clip.kind == "temporary" || clip.kind == "mini_temporary") continue;
       const double slide = o.slide.value_or(std::max(0.0, needed - 0.5 * clip.blade - 0.25 * size.perimeter + 0.7));
       const Vec3 middle = neck.centre + lift * neck.normal - slide * outward;
-      const double back = o.slide ? 0 : way_back(floor, clip, middle, -outward);
+      const double back = o.slide ? 0 : way_back(floor, clip, middle, -outward, neck.normal.cross(outward));
       for (const bool mirrored : {false, true}) {
         ClipPlan plan;
         plan.clip = clip, plan.to_surgeon = to_surgeon, plan.needed = needed, plan.drawn_back = back;
@@ -254,8 +263,8 @@ ApplierPose plan_temporary(const artery::Vessel& v, const Solid& floor, const Cl
   // Pressed flat the parent is half its perimeter wide; the tips go past its far edge where the floor lets them.
   const double tips = 0.5 * std::numbers::pi * c.radius[at] + past, slide = tips - 0.5 * clip.blade;
   const Vec3 middle = c.points[at] - slide * outward;
-  return applier_pose(clip, middle + way_back(floor, clip, middle, -outward) * outward, -outward,
-                      along.cross(outward).normalized());
+  const Vec3 closing = along.cross(outward).normalized();
+  return applier_pose(clip, middle + way_back(floor, clip, middle, -outward, closing) * outward, -outward, closing);
 }
 
 }  // namespace insula::case_builder
