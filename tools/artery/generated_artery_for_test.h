@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ struct GeneratedArtery {
   /// The closed surface with its caps.
   Surface surface() const;
 };
+
+/// For the names of tests.
+inline void PrintTo(const GeneratedArtery& a, std::ostream* out) { *out << a.name; }
 
 inline double smooth_least(double a, double b, double width) {
   const double h = std::max(width - std::abs(a - b), 0.0) / width;

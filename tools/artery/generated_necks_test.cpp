@@ -2,6 +2,7 @@
 // The proposed neck of thirty generated arteries: it stands where the dome was joined, and no vessel is in the sac.
 #include <gtest/gtest.h>
 
+#include "branches_of_sac.h"
 #include "generated_artery_for_test.h"
 #include "import_parts.h"
 
@@ -48,6 +49,7 @@ TEST_P(GeneratedNeck, StandsWhereTheDomeWasJoined) {
   const Counted n = counted(v, truth);
   EXPECT_GT(n.sac, 25);
   EXPECT_EQ(n.sac_on_vessels, 0);
+  EXPECT_TRUE(branches_of_sac(v).empty());
   // A neck that leaves much of the dome to the vessels is said to be unsure.
   if (neck_confidence(v.proposals) > 0.85) {
     EXPECT_LE(n.missed, 0.11 * n.dome);
@@ -93,6 +95,7 @@ TEST(NeckProposals, TheShortestLineIsTheNeckWhereABranchLeavesTheDome) {
   EXPECT_EQ(v.proposals.front().method, "shortest line");
   EXPECT_FALSE(v.proposals.front().planar);
   EXPECT_LT(neck_confidence(v.proposals), 0.85);
+  EXPECT_EQ(branches_of_sac(v).size(), 1u);
   for (std::size_t t = 0; t < v.wall.patch.size(); ++t) {
     if (v.wall.patch[t] < 0) continue;
     for (const int i : v.wall.mesh.triangles[t]) EXPECT_EQ(v.regions[std::size_t(v.region[std::size_t(i)])], "ends");

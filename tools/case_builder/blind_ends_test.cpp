@@ -129,11 +129,37 @@ TEST_P(TornEnds, AreCutStraightBehindTheirNotches) {
   EXPECT_FALSE(closed.torn.empty());
   EXPECT_GT(signed_volume(closed.surface.mesh), 0);
   cut_blind_ends(closed.surface, closed.torn, notes);
-  EXPECT_NO_THROW(check_torn(closed.surface, closed.torn));
+  EXPECT_NO_THROW(check_torn(closed.surface, closed.torn, notes));
   expect_caps_at_the_ends(GetParam(), closed.surface, 4);
 }
 INSTANTIATE_TEST_SUITE_P(Some, TornEnds, testing::ValuesIn(some_arteries()),
                          [](const auto& p) { return p.param.name; });
+
+/// A long hole in the side of a tube of radius 1.4 mm is filled while it is narrower than the ends.
+TEST(TornWall, ANarrowHoleIsFilledAndToldOf) {
+  const TriMesh whole = test::open_tube(0.12);
+  const auto closed_with = [&](double half_length, std::vector<Note>& notes) {
+    const Vec3 at(-4, -1.4, 0);
+    const TriMesh holed = test::without(whole, [&](const Vec3& p) {
+      return std::hypot((p.x() - at.x()) / half_length, (p - at).tail<2>().norm() / 0.25) < 1;
+    });
+    const ClosedSurface closed = closed_surface(holed, notes);
+    EXPECT_EQ(closed.torn.size(), 1u);
+    check_torn(closed.surface, closed.torn, notes);
+    return closed.surface;
+  };
+  std::vector<Note> notes;
+  const artery::Surface s = closed_with(0.95, notes);
+  EXPECT_EQ(s.caps.size(), 2u);
+  EXPECT_TRUE(artery::quality(s.mesh).closed);
+  std::vector<Note> without;
+  const double volume = signed_volume(closed_surface(whole, without).surface.mesh);
+  EXPECT_NEAR(signed_volume(s.mesh), volume, 0.02 * volume);
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const Note& n) {
+    return n.text.starts_with("A hole of ") && n.text.ends_with(" was filled.");
+  }));
+  EXPECT_THROW(closed_with(3.9, notes), InputError);
+}
 
 TEST(BlindEnds, KnownEndsAndTheSacBetweenThemStay) {
   for (const GeneratedArtery& a : artery::test::generated_arteries()) {

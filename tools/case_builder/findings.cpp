@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
+#include "tools/artery/branches_of_sac.h"
 #include "tools/artery/surface.h"
 #include "tools/case_builder/region_walls.h"
 #include "tools/case_builder/wall_patches.h"
@@ -115,6 +117,11 @@ FindingSection wall_findings(const artery::Vessel& v, const Json& wall) {
             fmt::format("{:.2f} mm (circle of equal area), in the frame of the input see wall/vessel.json", neck),
             "Not there? insula case wall FOLDER --neck \"X Y Z mm NX NY NZ\" --on"));
   add_neck_proposals(s, wall.at("neck"));
+  const std::vector<std::string> of_sac = artery::branches_of_sac(v);
+  s.findings.push_back(check(of_sac.empty(), "branch_from_sac", "branches that leave the sac",
+                             of_sac.empty() ? "none" : joined(of_sac),
+                             "A clip at the neck shuts them. Move the neck so that they stay on the vessel's side "
+                             "(--neck), and expect that a part of the dome is left."));
   const auto width = v.dimensions.find("sac_width");
   Finding dome = check(v.dome_height > 1, "dome_low", "dome",
                        fmt::format("{:.2f} mm high, {:.2f} mm wide, dome to neck {:.2f}", v.dome_height,

@@ -178,7 +178,7 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
   mend_shape(s, what, o, notes);
   if (const std::size_t before = s.caps.size(); cut_blind_ends(s, closed.torn, notes), before == 0 && !s.caps.empty())
     out.facts["openings_found_by"] = "ends of one calibre of a closed surface";
-  check_torn(s, closed.torn);
+  check_torn(s, closed.torn, notes);
   if (s.caps.size() < 2 && needed == Openings::two)
     throw InputError(
         fmt::format("{}: has {} opening{}; a vessel needs an inlet and an outlet. A closed end is found where the "

@@ -16,8 +16,9 @@ namespace {
 
 constexpr double round_enough =
     0.6;  // 4 pi area / perimeter^2 of a border that is an end of a vessel: an ellipse of 1 to 3
-constexpr double flat_enough = 0.5;  // farthest from its plane, in radii
-constexpr double small_hole = 0.3;   // of the widest border's radius: filled
+constexpr double flat_enough = 0.5;   // farthest from its plane, in radii
+constexpr double small_hole = 0.3;    // of the widest border's radius: filled
+constexpr double narrow_hole = 0.75;  // of the largest border's radius: filled too, and told of
 
 struct Border {
   std::vector<int> loop;
@@ -120,6 +121,9 @@ ClosedSurface closed_surface(const TriMesh& given, std::vector<Note>& notes) {
   artery::Surface& s = out.surface;
   std::vector<Border> cut;
   int filled = 0;
+  const auto torn = [&](const Border& b) -> TornBorder {  // the first border is the largest one
+    return {b.centre, b.radius, b.perimeter, b.perimeter / 6 < narrow_hole * borders.front().radius};
+  };
   for (const Border& b : borders) {
     const bool small = std::max(b.radius, b.perimeter / 6) < small_hole * std::max(widest, 1e-9);
     if (b.end && b.radius > small_hole * widest && b.deviation < 0.02 * b.radius) {
@@ -130,10 +134,10 @@ ClosedSurface closed_surface(const TriMesh& given, std::vector<Note>& notes) {
     fill(s, b, -1);
     if (b.end && b.radius > small_hole * widest) cut.push_back(b);
     else if (small) ++filled;
-    else out.torn.push_back({b.centre, b.radius, b.perimeter});
+    else out.torn.push_back(torn(b));
   }
   for (const Border& b : cut)
-    if (!cut_straight(s, b, notes)) out.torn.push_back({b.centre, b.radius, b.perimeter});
+    if (!cut_straight(s, b, notes)) out.torn.push_back(torn(b));
   if (!s.caps.empty())
     notes.push_back({Note::Kind::repair,
                      fmt::format("The surface was open at {} ends; they were closed by flat caps.", s.caps.size()),
@@ -147,18 +151,22 @@ ClosedSurface closed_surface(const TriMesh& given, std::vector<Note>& notes) {
   return out;
 }
 
-void check_torn(const artery::Surface& s, const std::vector<TornBorder>& torn) {
+void check_torn(const artery::Surface& s, const std::vector<TornBorder>& torn, std::vector<Note>& notes) {
   for (const TornBorder& b : torn) {
     bool there = false;
     for (std::size_t t = 0; t < s.patch.size(); ++t)
       for (const int v : s.mesh.triangles[t])
         there = there || (s.patch[t] < 0 && (s.mesh.vertices[std::size_t(v)] - b.centre).norm() < 0.3 * b.radius);
-    if (there)
+    if (!there) continue;
+    if (!b.narrow)
       throw InputError(
           fmt::format("the surface has a hole of {:.1f} mm around at {} that is neither an end of a vessel nor small: "
                       "close it in the program that made the surface, cut the vessel straight before it, or make the "
                       "surface anew from a grid with --rebuild \"0.2 mm\" after closing it",
                       b.perimeter, place(b.centre)));
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("A hole of {:.1f} mm around at {} was filled.", b.perimeter, place(b.centre)),
+                     "Look whether the wall is right there, and whether a branch is missing."});
   }
 }
 

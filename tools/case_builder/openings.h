@@ -11,6 +11,7 @@ namespace insula::case_builder {
 struct TornBorder {
   Vec3 centre = Vec3::Zero();
   double radius = 0, perimeter = 0;  ///< radius: of the circle of equal area
+  bool narrow = false;               ///< much narrower than the largest border
 };
 struct ClosedSurface {
   artery::Surface surface;
@@ -21,8 +22,9 @@ struct ClosedSurface {
 /// caps; holes much smaller than those are filled. Every repair is noted.
 ClosedSurface closed_surface(const TriMesh& mesh, std::vector<Note>& notes);
 
-/// Throws InputError for a torn border that is still in the wall, since no end of a vessel was cut off there.
-void check_torn(const artery::Surface& surface, const std::vector<TornBorder>& torn);
+/// For torn borders that are still in the wall, since no end of a vessel was cut off there. Narrow ones are noted.
+/// Throws InputError for others.
+void check_torn(const artery::Surface& surface, const std::vector<TornBorder>& torn, std::vector<Note>& notes);
 
 /// Cuts a vessel across: of the lines in which the plane meets the surface, the one around the point (or nearest to it)
 /// becomes the rim of a cap; everything beyond it goes, with the caps there. Throws InputError when that line does not

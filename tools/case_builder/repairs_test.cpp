@@ -85,5 +85,20 @@ TEST(Wall, IsCutBeforeAForkThatLiesWhereItWouldEnd) {
     }
 }
 
+/// The first branch ends in a cap that is smaller than the wall's triangles.
+TEST(Wall, IsCutBeforeItWouldRunThroughItself) {
+  artery::test::GeneratedArtery a = artery::test::on_fork("fork", {1.4, 1.0, 1.1, 60, 60, 20}, round_dome(), 0, 0);
+  a.step = 0.2;
+  const Vec3 d = artery::test::direction(60, 0);
+  a.limbs[1].curve = artery::smooth_curve({Vec3::Zero(), 5 * d, 11.5 * d}, 1.0, 0.12, 0.25);
+  std::vector<Note> notes;
+  Progress quiet;
+  const artery::Vessel v = make_wall(a.surface(), {}, notes, quiet);
+  EXPECT_FALSE(artery::quality(v.wall.mesh).self_intersecting);
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const Note& n) {
+    return n.text.find("farther out the wall would run through itself") != std::string::npos;
+  }));
+}
+
 }  // namespace
 }  // namespace insula::case_builder

@@ -35,8 +35,8 @@ inline TriMesh tube_with_sac(double step = 0.35) {
 }
 
 /// Without the flat ends.
-inline TriMesh open_tube() {
-  TriMesh m = tube_with_sac();
+inline TriMesh open_tube(double step = 0.35) {
+  TriMesh m = tube_with_sac(step);
   std::erase_if(m.triangles, [&](const auto& t) {
     for (const int v : t)
       if (std::abs(std::abs(m.vertices[std::size_t(v)].x()) - 8) > 1e-6) return false;

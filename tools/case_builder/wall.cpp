@@ -127,6 +127,11 @@ Vessel made_again(const artery::Surface& s, artery::ImportOptions options, const
   return made(s, options);
 }
 
+/// Thrown where parts of the wall cross.
+struct CrossedWall : InputError {
+  using InputError::InputError;
+};
+
 void check_sound(const Vessel& v) {
   const artery::Quality q = artery::quality(v.wall.mesh);
   if (!q.closed || q.components != 1)
@@ -137,7 +142,7 @@ void check_sound(const Vessel& v) {
         "the wall has a hole through it (branches that have grown together); part them in the program that made the "
         "surface");
   if (q.self_intersecting)
-    throw InputError(
+    throw CrossedWall(
         "the wall runs through itself: parts of the vessel are closer than its triangles are long. Give it more "
         "vertices (--vertices 2500), or make the surface anew from a grid with --rebuild \"0.2 mm\"");
 }
@@ -194,12 +199,36 @@ Vessel wall_of(const artery::Surface& surface, const Options& o, std::vector<Not
   return v;
 }
 
+/// With shorter vessels where the wall would cross itself far from the neck.
+Vessel uncrossed_wall_of(const artery::Surface& surface, const Options& o, std::vector<Note>& notes,
+                         Progress& progress) {
+  const std::vector<Note> before = notes;
+  const auto kept = [&](double share) {
+    notes = before;
+    Options shorter = o;
+    shorter.keep = share * o.keep;
+    if (share < 1)
+      notes.push_back({Note::Kind::repair,
+                       fmt::format("Only {:.1f} mm of each vessel were kept from the neck on: farther out the wall "
+                                   "would run through itself.",
+                                   shorter.keep),
+                       "Keep another length with --keep."});
+    return wall_of(surface, shorter, notes, progress);
+  };
+  if (!(o.keep > 0)) return kept(1);
+  for (const double share : {1.0, 0.8}) try {
+      return kept(share);
+    } catch (const CrossedWall&) {
+    }
+  return kept(0.6);
+}
+
 }  // namespace
 
 Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<Note>& notes, Progress& progress) {
   const std::vector<Note> before = notes;
   try {
-    return wall_of(surface, o, notes, progress);
+    return uncrossed_wall_of(surface, o, notes, progress);
   } catch (const InputError& e) {
     if (o.neck || o.neck_points) throw;
     // The given triangles may be at fault: once more with those of a grid.
@@ -207,7 +236,7 @@ Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<N
     artery::Surface again = surface;
     try {
       make_anew(again, fmt::format("The given triangles made no wall ({})", e.what()), "the wall", o, notes);
-      return wall_of(again, o, notes, progress);
+      return uncrossed_wall_of(again, o, notes, progress);
     } catch (const std::runtime_error&) {
       throw InputError(e.what());
     }
