@@ -15,6 +15,6 @@ def motion(spec, folder, view):
     pose, press = field.placement({"press": 0, "push": 0, **spec["place"]}, spec["clip"])
     script = clipping.Script()
     script.command(0.1, "ask", "applier load " + spec["clip"])
-    clipping.place_clip(script.right, pose, press, last=spec.get("last_s", 0.8))
-    script.right.key(WAIT, clipping.steady_outside(script), clipping.last_q(script))
+    clipping.place_clip(script.right, pose, press, spec.get("approach_s", 2.5), last=spec.get("last_s", 0.8))
+    script.right.key(spec.get("wait_s", WAIT), clipping.steady_outside(script), clipping.last_q(script))
     return script.text()
