@@ -88,6 +88,8 @@ export interface Project {
   name: string;
   file: string;
   choices: Choices;
+  /** Of the choices: another one after each change. */
+  revision: number;
   undo: boolean;
   redo: boolean;
   command: string;
@@ -184,6 +186,7 @@ export function projectOf(json: unknown): Project {
     name: text(p.name),
     file: text(p.file),
     choices: choicesOf(p.choices),
+    revision: number(p.revision),
     undo: p.undo === true,
     redo: p.redo === true,
     command: text(p.command),
