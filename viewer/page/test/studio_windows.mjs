@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { patience, waitFor } from './browser.mjs';
 import { project } from './studio_deeds.mjs';
-import { shots } from './studio_page.mjs';
+import { shots, viewport } from './studio_page.mjs';
 
 const shot = shots('studio');
 const difficulty = (page) => page.getByLabel('Difficulty');
@@ -23,7 +23,7 @@ async function deafUntilItsNextDeed(page) {
 
 /** A second window sees what the first one changes, and overwrites nothing that it has not seen. */
 export async function twoWindows(page, address) {
-  const other = await page.context().newPage();
+  const other = await page.context().browser().newPage({ viewport });
   other.setDefaultTimeout(patience.timeout);
   await other.goto(`${address}#narrow_neck`);
   const before = await choices(page);

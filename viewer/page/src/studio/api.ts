@@ -246,7 +246,7 @@ export class StudioApi {
   async upload(file: File, signal: AbortSignal, share: (done: number) => void): Promise<Project> {
     const upload = [...crypto.getRandomValues(new Uint32Array(4))].map((n) => n.toString(36)).join('');
     const url = new URL('api/studio/upload', this.base);
-    url.search = new URLSearchParams({ file: file.name, upload }).toString();
+    url.search = new URLSearchParams({ file: file.name, upload }).toString().replaceAll('+', '%20');
     const lost = () => new Error(message('The connection was lost: send the file again.'));
     try {
       const project = projectOf(await contentOf(await sent(url, file, signal, share, lost)));
