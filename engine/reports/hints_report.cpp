@@ -5,11 +5,22 @@
 
 #include <cmath>
 
+#include "core/base/spoken.h"
 #include "engine/reports/svg_plot.h"
 
 namespace insula {
 
 using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// "brain_force.left.force" is read as "brain force, left, force".
+std::string watched_words(std::string id) {
+  for (std::size_t at = 0; (at = id.find('.', at)) != std::string::npos; at += 2) id.replace(at, 1, ", ");
+  return spoken(std::move(id));
+}
+
+}  // namespace
 
 Json hint_json(const HintCause& cause) {
   return {{"id", cause.id},
@@ -42,9 +53,10 @@ std::string cues_html(const std::vector<Cue>& cues, bool seen) {
   for (const Cue& cue : cues) {
     const HintCause& c = cue.cause;
     out += fmt::format(
-        "<tr><td class=\"n\">{:.2f}</td><td>{}</td><td><code>{}</code></td><td class=\"n\">{}</td>"
+        "<tr><td class=\"n\">{:.2f}</td><td>{}</td><td>{}</td><td class=\"n\">{}</td>"
         "<td class=\"n\">{}</td><td class=\"n\">{:.0f} %</td></tr>\n",
-        cue.time, escaped(c.text), escaped(c.watched), escaped(c.value), escaped(c.limit), 100 * c.share);
+        cue.time, escaped(c.text), escaped(watched_words(c.watched)), escaped(c.value), escaped(c.limit),
+        100 * c.share);
   }
   return out + "</tbody></table>\n";
 }

@@ -100,5 +100,33 @@ TEST(Wall, IsCutBeforeItWouldRunThroughItself) {
   }));
 }
 
+/// What its note says of a proposed neck.
+std::string note_of_neck(const std::vector<Note>& notes) {
+  for (const Note& n : notes)
+    if (n.text.starts_with("Neck and sac are a proposal: ")) return n.text;
+  return {};
+}
+
+/// Every plane that parts the dome of the second vessel leaves the branch's opening beyond it.
+TEST(Wall, SaysWhichProposalTheNeckIs) {
+  artery::test::GeneratedArtery a = artery::test::on_fork("fork", {}, round_dome(), 0, 0);
+  Progress quiet;
+  std::vector<Note> notes;
+  artery::Vessel v = make_wall(a.surface(), {}, notes, quiet);
+  EXPECT_EQ(v.proposals.front().method, "narrowest section");
+  EXPECT_NE(note_of_neck(notes).find("narrowest section"), std::string::npos) << note_of_neck(notes);
+
+  artery::test::Dome dome;
+  dome.neck_diameter = 3.4, dome.radius = 3.2, dome.half_height = 3.2, dome.lift = 0.2;
+  a = artery::test::on_fork("branch_of_the_dome", {}, dome, 0, 0);
+  const Vec3 from = a.dome_centre() + Vec3(0, 1.4, 1.8);
+  const std::vector<Vec3> way{from, from + Vec3(0, 3, 4), from + Vec3(1, 5, 8)};
+  a.limbs.push_back({"of_the_dome", artery::smooth_curve(way, 0.5, 0.5, 0.4), false, true});
+  notes.clear();
+  v = make_wall(a.surface(), {}, notes, quiet);
+  EXPECT_EQ(v.proposals.front().method, "shortest line");
+  EXPECT_NE(note_of_neck(notes).find("shortest line"), std::string::npos) << note_of_neck(notes);
+}
+
 }  // namespace
 }  // namespace insula::case_builder

@@ -147,6 +147,17 @@ void check_sound(const Vessel& v) {
         "vertices (--vertices 2500), or make the surface anew from a grid with --rebuild \"0.2 mm\"");
 }
 
+/// What the neck is: the author's, or the proposal that was taken.
+Note neck_note(const Vessel& v) {
+  if (v.proposals.empty()) return {Note::Kind::fact, "The neck is where it was asked for.", ""};
+  const bool by_line = v.proposals.front().method == "shortest line";
+  return {Note::Kind::fact,
+          by_line ? "Neck and sac are a proposal: the shortest line around what bulges out of the vessels."
+                  : "Neck and sac are a proposal: the narrowest section near the border of what bulges out of the "
+                    "vessels.",
+          "Look at the pictures; move the neck with --neck \"X Y Z mm NX NY NZ\" or --neck-points."};
+}
+
 Vessel wall_of(const artery::Surface& surface, const Options& o, std::vector<Note>& notes, Progress& progress) {
   artery::Surface s = with_inlet_first(surface, o);
   artery::ImportOptions options;
@@ -164,7 +175,6 @@ Vessel wall_of(const artery::Surface& surface, const Options& o, std::vector<Not
     throw InputError(
         "no sac was found: nothing of the wall bulges out of the vessels by half of their radius. If there is an "
         "aneurysm, give its neck: --neck \"X Y Z mm NX NY NZ\" (a point in the neck and the direction to the dome)");
-  const bool given = options.neck.has_value();
   const std::vector<artery::NeckProposal> proposals = v.proposals;
   if (o.keep > 0) {
     progress.step("cutting the ends");
@@ -191,11 +201,7 @@ Vessel wall_of(const artery::Surface& surface, const Options& o, std::vector<Not
          ""});
   }
   check_sound(v);
-  notes.push_back(
-      {Note::Kind::fact,
-       given ? "The neck is where it was asked for."
-             : "Neck and sac are a proposal: the narrowest section near the border of what bulges out of the vessels.",
-       given ? "" : "Look at the pictures; move the neck with --neck \"X Y Z mm NX NY NZ\" or --neck-points."});
+  notes.push_back(neck_note(v));
   return v;
 }
 

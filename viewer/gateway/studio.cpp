@@ -28,6 +28,11 @@ std::string state_of(const StudioProject& p, const char* what) {
 
 constexpr std::size_t most_uploads = 10'000;
 
+/// Whoever asks for these must have seen the present choices.
+bool depends_on_choices(std::string_view path) {
+  return path == "choose" || path == "undo" || path == "redo" || path == "build" || path == "try";
+}
+
 bool is_upload_name(const std::string& name) {
   return !name.empty() && name.size() <= 64 &&
          std::all_of(name.begin(), name.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
@@ -130,6 +135,7 @@ ApiAnswer Studio::shown(const StudioProject& p) const {
   return answer_with(Json{{"name", p.name},
                           {"file", p.file},
                           {"choices", p.choices()},
+                          {"revision", p.revision},
                           {"undo", p.at > 0},
                           {"redo", p.at + 1 < p.history.size()},
                           {"command", command_line(p)},
@@ -267,8 +273,8 @@ ApiAnswer Studio::change(StudioProject& p, std::string_view path, const Json& bo
   };
   StudioProject next = p;
   if (path == "choose") choose(next, changed_choices(p.choices(), body.value("choices", Json())));
-  if (path == "undo" && next.at > 0) --next.at;
-  if (path == "redo" && next.at + 1 < next.history.size()) ++next.at;
+  if (path == "undo") undo(next);
+  if (path == "redo") redo(next);
   const bool anew = reading(next) != reading(p);
   if (anew && jobs_.count(p.name) && !job(p.name, Kind::inspect)) return refusal(409, at_work);
   if (anew) inspect(next);
@@ -277,6 +283,11 @@ ApiAnswer Studio::change(StudioProject& p, std::string_view path, const Json& bo
 }
 
 ApiAnswer Studio::act(std::string_view path, StudioProject& p, const Json& body) {
+  if (depends_on_choices(path)) {
+    const auto seen = body.find("revision");
+    if (seen == body.end() || !seen->is_number_integer()) return refusal(428, "the revision of the case is missing");
+    if (*seen != p.revision) return refusal(412, "the case was changed in another window");
+  }
   if (path == "choose" || path == "undo" || path == "redo") return change(p, path, body);
   if (path == "build") return build(p);
   if (path == "try") return try_clip(p);

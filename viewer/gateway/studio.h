@@ -36,17 +36,18 @@ class Studio {
 
   /// path: what follows /api/studio/.
   ///   projects        {projects: [{name, file, state}], building, most_bytes}
-  ///   project?name=   {name, file, choices, undo, redo, command, scan: null or {state, error, facts},
+  ///   project?name=   {name, file, choices, revision, undo, redo, command, scan: null or {state, error, facts},
   ///                    inspect: {state, error, number, facts},
   ///                    build: {state, error, seconds, stage, percent, step}, built: {current, report, exercises},
   ///                    trial: {state, error, found, current}, play: {state, url, error}}
   ///   pose?name=&pose=&parted=   StudioPoses::ask() of the built case; pose: six numbers, parted: 1 with the lobes
   ///   parted
   ApiAnswer get(std::string_view path, std::string_view query);
-  ///   choose {name, choices}; undo, redo, build, try, cancel, remove, again {name}; play {name, exercise}: the
-  ///   project, as above. again: the file is read once more. edit {name}: a copy of the built scenes. What begins with
-  ///   "scene" is answered by StudioScenes. discard {upload}: a cancelled upload becomes no project, whether all of it
-  ///   has arrived or will arrive.
+  ///   choose {name, revision, choices}; undo, redo, build, try {name, revision}; cancel, remove, again {name};
+  ///   play {name, exercise}: the project, as above. revision: that of the choices that the page shows. If they have
+  ///   changed since, the answer is 412 and nothing is done; 428: it is missing. again: the file is read once more.
+  ///   edit {name}: a copy of the built scenes. What begins with "scene" is answered by StudioScenes. discard {upload}:
+  ///   a cancelled upload becomes no project, whether all of it has arrived or will arrive.
   ApiAnswer post(std::string_view path, const std::string& body);
   /// file=: name of the author's file; upload=: what the page calls this upload, for discard. The new project. The
   /// content is moved to it.

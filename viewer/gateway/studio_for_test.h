@@ -65,9 +65,15 @@ class StudioTest : public ::testing::Test {
   json upload(const std::string& file = "vessel.off", const std::string& bytes = off_file) {
     return json::parse(sent(file, bytes).json);
   }
+  /// As a page that shows the present choices, unless `more` has another revision.
   ApiAnswer ask(const std::string& act, const std::string& name, json more = json::object()) {
     more["name"] = name;
+    if (!more.contains("revision")) more["revision"] = revision(name);
     return studio_->post(act, more.dump());
+  }
+  std::int64_t revision(const std::string& name) const {
+    const auto p = StudioProjects(folder_.path() / "data/studio").read(name);
+    return p ? p->revision : 0;
   }
   json project(const std::string& name) { return json::parse(studio_->get("project", "name=" + name).json); }
   /// The project, once `what` is no longer at work.

@@ -2,6 +2,7 @@
 #include "viewer/gateway/studio_projects.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "core/base/case_name.h"
 #include "core/base/input_error.h"
@@ -20,6 +21,11 @@ constexpr const char* description = "project.json";
 constexpr int format = 1;
 constexpr std::size_t most_history = 200;
 constexpr std::size_t longest_name = 48;  // leaves room for a number
+
+std::int64_t now_ms() {
+  using namespace std::chrono;
+  return duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace
 
@@ -46,11 +52,12 @@ std::optional<StudioProject> StudioProjects::read(const std::string& name) const
   if (!is_case_name(name)) return std::nullopt;
   const Json json = read_json(folder(name) / description);
   if (!json.is_object() || json.value("format", 0) != format) return std::nullopt;
-  StudioProject out{name, text_of(json, "file"), text_of(json, "input"), {}, 0, Json::object()};
+  StudioProject out{name, text_of(json, "file"), text_of(json, "input"), {}, 0, 0, Json::object()};
   if (json.contains("work") && json["work"].is_object()) out.work = json["work"];
   try {
     for (const Json& choices : json.at("history")) out.history.push_back(changed_choices(first_choices(), choices));
     out.at = json.at("at").get<std::size_t>();
+    out.revision = json.value("revision", std::int64_t(0));
   } catch (const std::exception&) {
     return std::nullopt;
   }
@@ -59,10 +66,10 @@ std::optional<StudioProject> StudioProjects::read(const std::string& name) const
 }
 
 void StudioProjects::write(const StudioProject& p) const {
-  const Json json{{"format", format},     {"what", "A project of Insula's case builder. For training only."},
-                  {"file", p.file},       {"input", p.input},
-                  {"history", p.history}, {"at", p.at},
-                  {"work", p.work}};
+  const Json json{{"format", format},       {"what", "A project of Insula's case builder. For training only."},
+                  {"file", p.file},         {"input", p.input},
+                  {"history", p.history},   {"at", p.at},
+                  {"revision", p.revision}, {"work", p.work}};
   if (!replace_file(folder(p.name) / description, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"))
     throw InputError(project_not_written);
 }
@@ -76,7 +83,7 @@ StudioProject StudioProjects::create(const std::string& file, const std::string&
     if (error || k > 999) throw InputError("no folder can be made for the project");
     name = wanted + "_" + std::to_string(k);
   }
-  StudioProject out{name, shown(file), input, {first_choices()}, 0, Json::object()};
+  StudioProject out{name, shown(file), input, {first_choices()}, 0, now_ms(), Json::object()};
   try {
     fs::create_directories((folder(name) / out.input).parent_path(), error);
     fs::rename(content, folder(name) / out.input, error);
@@ -100,6 +107,17 @@ void choose(StudioProject& p, Json choices) {
   p.history.push_back(std::move(choices));
   if (p.history.size() > most_history) p.history.erase(p.history.begin());
   p.at = p.history.size() - 1;
+  ++p.revision;
+}
+
+void undo(StudioProject& p) {
+  if (p.at == 0) return;
+  --p.at, ++p.revision;
+}
+
+void redo(StudioProject& p) {
+  if (p.at + 1 >= p.history.size()) return;
+  ++p.at, ++p.revision;
 }
 
 }  // namespace insula::gateway

@@ -16,6 +16,9 @@ struct StudioProject {
   std::string input;                    ///< its path in the folder
   std::vector<nlohmann::json> history;  ///< choices; one at least
   std::size_t at = 0;                   ///< the present ones
+  /// Goes up with each change of the choices. A page sends the one that it shows, so that it changes nothing that it
+  /// has not seen. A new project begins with the time, so that one of a removed project's name has others.
+  std::int64_t revision = 0;
   /// {inspect: {state, error}, build: {state, error, folder, choices, began_ms}, builds}; states: running, done,
   /// failed, cancelled.
   nlohmann::json work;
@@ -50,5 +53,8 @@ class StudioProjects {
 
 /// Makes choices the present ones. Later ones, which had been undone, go.
 void choose(StudioProject& project, nlohmann::json choices);
+/// The choices before, or those that were undone last; nothing if there are none.
+void undo(StudioProject& project);
+void redo(StudioProject& project);
 
 }  // namespace insula::gateway

@@ -270,6 +270,48 @@ TEST_F(StudioTest, ChoicesAreKeptAndTakenBack) {
   EXPECT_FALSE(project(name)["redo"]) << "another way was taken";
 }
 
+TEST_F(StudioTest, AChangeOfWhatAnotherWindowHasChangedIsRefused) {
+  const std::string name = ready();
+  const json one = project(name), other = project(name);
+  const auto change = [&](const json& seen, const char* what, int value) {
+    return ask("choose", name, {{"revision", seen["revision"]}, {"choices", {{what, value}}}});
+  };
+  EXPECT_EQ(change(one, "difficulty", 3).status, 200);
+  const json after = project(name);
+  for (const char* act : {"undo", "redo", "build", "try"})
+    EXPECT_EQ(ask(act, name, {{"revision", other["revision"]}}).status, 412) << act;
+  const ApiAnswer refused = change(other, "difficulty", 5);
+  EXPECT_EQ(refused.status, 412);
+  EXPECT_NE(refused.json.find("changed in another window"), std::string::npos) << refused.json;
+  EXPECT_EQ(change(other, "plays", 5).status, 412) << "another choice is refused too";
+  EXPECT_EQ(project(name), after) << "nothing has changed";
+  EXPECT_EQ(change(after, "plays", 5).status, 200);
+  EXPECT_EQ(project(name)["choices"]["difficulty"], 3);
+  EXPECT_EQ(project(name)["choices"]["plays"], 5);
+  EXPECT_EQ(studio_->post("undo", json{{"name", name}}.dump()).status, 428) << "of whoever does not say what he saw";
+}
+
+TEST_F(StudioTest, EachChangeOfChoicesIsARevisionAndNothingElseIs) {
+  const std::string name = ready();
+  const std::int64_t first = revision(name);
+  ask("choose", name, {{"choices", {{"difficulty", 3}}}});
+  EXPECT_EQ(revision(name), first + 1);
+  ask("choose", name, {{"choices", {{"difficulty", 3}}}});
+  EXPECT_EQ(revision(name), first + 1) << "the same again is no change";
+  ask("undo", name);
+  EXPECT_EQ(revision(name), first + 2) << "a page that has not seen the undo is refused";
+  ask("undo", name);
+  EXPECT_EQ(revision(name), first + 2) << "there was nothing to undo";
+  ask("redo", name);
+  restart();
+  EXPECT_EQ(project(name)["revision"], first + 3);
+  ask("build", name);
+  wait(name, "build");
+  EXPECT_EQ(revision(name), first + 3);
+  ask("remove", name);
+  EXPECT_NE(revision(ready()), first) << "a new project of the same name is another one";
+}
+
 TEST_F(StudioTest, AnotherUnitReadsTheFileAgain) {
   const std::string name = ready();
   const json now = json::parse(ask("choose", name, {{"choices", {{"unit", "cm"}}}}).json);

@@ -75,13 +75,16 @@ function literalsFrom(text, at) {
 /** Sentences that the case builder can say to an author: of refusals, notes and problems with what to do. */
 export function builderMessages() {
   const text = builderSources().replace(/'(?:"|\\.)'/g, "' '");
-  const heads = /\b(?:InputError|problem|refuse|refuse_patch)\(|\{Note::Kind::\w+|\bcheck\([a-z]/g;
+  const heads = /\b(?:InputError|problem|refuse|refuse_patch)\(|\{Note::Kind::\w+|\b(?:check|tell)\(\s*[a-z!]/g;
   const all = [...text.matchAll(heads)].flatMap((m) => literalsFrom(text, m.index + m[0].search(/[({]/)));
   return [...new Set(all)].filter((words) => / /.test(words.trim()) && words.length >= 16).sort();
 }
 
-/** Those that stay in English, each for a reason that their file tells. */
-export const englishMessages = () => JSON.parse(readFileSync(join(here, 'builder_english.json'), 'utf8'));
+/** Those that stay in English. Their file has them by the reason for it. */
+export const englishMessages = () =>
+  Object.values(JSON.parse(readFileSync(join(here, 'builder_english.json'), 'utf8')))
+    .flat()
+    .sort();
 
 let known;
 

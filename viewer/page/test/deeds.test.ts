@@ -34,12 +34,12 @@ class SlowGateway {
 function begun(gateway: { project(): Promise<Project>; act(act: Act, more: object): Promise<Project> }) {
   const shown: Project[] = [];
   const faults: unknown[] = [];
-  const deeds = new Deeds(
-    gateway,
-    (p) => shown.push(p),
-    (e) => faults.push(e),
-  );
-  return { deeds, shown, faults };
+  const overtaken: ((() => void) | null)[] = [];
+  const deeds = new Deeds(gateway, (p) => shown.push(p), {
+    failed: (e) => faults.push(e),
+    overtaken: (again) => overtaken.push(again),
+  });
+  return { deeds, shown, faults, overtaken };
 }
 
 const limit = (deeds: Deeds, rule: string, value: string) =>
@@ -63,6 +63,9 @@ test('two changes of one list, the second before the first is answered, both sta
 test('an undo that follows a change at once comes after it', async () => {
   const gateway = new SlowGateway();
   const { deeds } = begun(gateway);
+  void deeds.follow();
+  await gateway.letGo();
+  gateway.asked.length = 0;
   void deeds.choose({ walls: ['neck.young=7 MPa'] });
   void deeds.act('undo');
   await Promise.resolve();
@@ -73,6 +76,9 @@ test('an undo that follows a change at once comes after it', async () => {
 test('what was asked before a change, and is answered after it, is not shown', async () => {
   const gateway = new SlowGateway();
   const { deeds, shown } = begun(gateway);
+  void deeds.follow();
+  await gateway.letGo();
+  gateway.asked.length = shown.length = 0;
   void deeds.follow();
   void deeds.choose({ walls: ['neck.young=7 MPa'] });
   await Promise.resolve();

@@ -12,6 +12,7 @@ import { ownBus, Programs, root } from './programs.mjs';
 import { addARetractor, moveTheVessel, paintAPlaque, project } from './studio_deeds.mjs';
 import { childrenOf, gatewayBelow } from './studio_processes.mjs';
 import { dropped, picture, shots, step, viewport } from './studio_page.mjs';
+import { twoWindows } from './studio_windows.mjs';
 
 const programs = new Programs();
 const data = mkdtempSync(join(tmpdir(), 'insula_studio_'));
@@ -125,6 +126,9 @@ try {
   await page.getByRole('button', { name: 'Redo' }).click();
   await page.getByText('set by clicks', { exact: true }).waitFor(patience);
   check('a choice is undone and made again');
+
+  const seen = await twoWindows(page, address);
+  check(`a second window shows a change after ${seen.toFixed(1)} s, and overwrites none that it has not seen`);
 
   const places = await paintAPlaque(page, proposal);
   check(`a part of the wall is painted with ${places} points, undone and made stiffer`);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the engine's tutor says, how long a cue is shown, and what the browser keeps of the choice.
 import { describe, expect, it } from 'vitest';
+import { catalogue } from '../scripts/texts.mjs';
 import { parseHud } from '../src/hud/state';
+import { setLanguage } from '../src/languages/text';
 import { readCueChoice, writeCueChoice } from '../src/tutor/choice';
+import { whyText } from '../src/tutor/cue_line';
 import { isFresh, shownS } from '../src/tutor/tutor';
 import { parseTutor } from '../src/tutor/state';
 
@@ -30,6 +33,15 @@ describe('what the tutor says', () => {
 });
 
 describe('a cue', () => {
+  it('says in words what came near its limit', () => {
+    const near = { watched: 'vessel_force.right.force', value: '160 mN', limit: '200 mN' };
+    expect(whyText(near)).toBe('vessel force, right, force: 160 mN, limit 200 mN');
+    expect(whyText({ ...near, watched: 'force_mean right' })).toContain('force mean, right:');
+    setLanguage('de', catalogue('de'));
+    expect(whyText(near)).toContain('Kraft auf das Gefäß, rechts, Kraft: 160 mN');
+    setLanguage('en', {});
+  });
+
   it('is shown for a few seconds of simulated time', () => {
     expect(isFresh({ timeS: 10 }, 10)).toBe(true);
     expect(isFresh({ timeS: 10 }, 10 + shownS - 0.1)).toBe(true);

@@ -3,7 +3,7 @@
 // have placeholders there: "Divide 12 strands" is looked up as "Divide {0} strands". So has a name at the end: "Largest
 // force on: left rail" is looked up as "Largest force on: {name}" and "left rail". `insula texts` prints all of them.
 import { fixed } from './numbers';
-import { hasTranslation, languageTag, text } from './text';
+import { hasTranslation, languageTag, text, type TextValues } from './text';
 
 const number = /(?<![\p{L}\d._])\d+(?:\.\d+)?(?![\p{L}\d_])/gu;
 const nameAtEnd = /^(.*: )([a-z][a-z0-9 ]*)$/;
@@ -21,6 +21,10 @@ export const isMeasured = (key: string): boolean => key === '{0}' || measured.te
 
 /** As many decimals as were written. */
 const localized = (n: string): string => fixed(Number(n), n.split('.')[1]?.length ?? 0);
+
+/** A key of the catalogues with its arguments; null: it has no translation. */
+export const saidWith = (key: string, values: TextValues): string | null =>
+  hasTranslation(key) ? text(key, values) : null;
 
 /** A title, a goal, a fault, a name: in the reader's language, or as it is if there is no translation. */
 export function said(english: string): string {

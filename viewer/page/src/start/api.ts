@@ -204,14 +204,25 @@ export function runningOf(json: unknown): Running {
   };
 }
 
-/** What an answer of the gateway holds. A refusal is thrown as an Error with its text. */
+/** What the gateway did not do, in its words. status: of HTTP. */
+export class Refusal extends Error {
+  constructor(
+    words: string,
+    readonly status: number,
+  ) {
+    super(words);
+  }
+}
+
+/** What an answer of the gateway holds. Throws a Refusal. */
 export async function contentOf(answer: Response): Promise<unknown> {
   const json: unknown = await answer.json().catch(() => ({}));
   if (answer.ok) return json;
-  throw new Error(text(object(json).error) || message('the gateway answered {status}', { status: answer.status }));
+  const { status } = answer;
+  throw new Refusal(text(object(json).error) || message('the gateway answered {status}', { status }), status);
 }
 
-/** The gateway's answers. A refusal is thrown as an Error with its text. */
+/** The gateway's answers. What it refuses is thrown as a Refusal. */
 export class Api {
   constructor(private readonly base: URL) {}
 

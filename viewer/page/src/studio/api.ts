@@ -88,6 +88,8 @@ export interface Project {
   name: string;
   file: string;
   choices: Choices;
+  /** Of the choices: another one after each change. */
+  revision: number;
   undo: boolean;
   redo: boolean;
   command: string;
@@ -184,6 +186,7 @@ export function projectOf(json: unknown): Project {
     name: text(p.name),
     file: text(p.file),
     choices: choicesOf(p.choices),
+    revision: number(p.revision),
     undo: p.undo === true,
     redo: p.redo === true,
     command: text(p.command),
@@ -243,7 +246,7 @@ export class StudioApi {
   async upload(file: File, signal: AbortSignal, share: (done: number) => void): Promise<Project> {
     const upload = [...crypto.getRandomValues(new Uint32Array(4))].map((n) => n.toString(36)).join('');
     const url = new URL('api/studio/upload', this.base);
-    url.search = new URLSearchParams({ file: file.name, upload }).toString();
+    url.search = new URLSearchParams({ file: file.name, upload }).toString().replaceAll('+', '%20');
     const lost = () => new Error(message('The connection was lost: send the file again.'));
     try {
       const project = projectOf(await contentOf(await sent(url, file, signal, share, lost)));

@@ -9,6 +9,7 @@ import { CasePanel } from './case_panel';
 import { type Change, Deeds } from './deeds';
 import { FilePanel } from './file_panel';
 import { GoalsPanel } from './goals/goals_panel';
+import { handsAtWork } from './hands_at_work';
 import { NeckPanel } from './neck_panel';
 import { chosenPlane } from './neck_plane';
 import { PosePanel } from './pose/pose_panel';
@@ -39,6 +40,7 @@ export interface Asks {
 export class Editor {
   readonly root = el('div', { class: 'editor' });
   private readonly say = el('p', { class: 'say', role: 'alert' });
+  private readonly again = el('button', { type: 'button', hidden: '' }, text('Make my change all the same'));
   private readonly undo = el('button', { type: 'button' }, text('Undo'));
   private readonly redo = el('button', { type: 'button' }, text('Redo'));
   private readonly title = el('h2', {});
@@ -55,6 +57,7 @@ export class Editor {
   private ended = false;
   private project: Project | null = null;
   private readonly endKeys: () => void;
+  private readonly endHands: () => void;
   private readonly deeds: Deeds;
 
   constructor(
@@ -66,11 +69,10 @@ export class Editor {
       project: () => api.project(name),
       act: (act: Act, more: object) => api.act(name, act, more),
     };
-    this.deeds = new Deeds(
-      gateway,
-      (project, ofDeed) => this.told(project, ofDeed),
-      (e) => setText(this.say, reason(e)),
-    );
+    this.deeds = new Deeds(gateway, (project, ofDeed) => this.told(project, ofDeed), {
+      failed: (e) => this.tell(reason(e)),
+      overtaken: (again) => this.overtaken(again),
+    });
     const asks: Asks = {
       choose: (change) => this.deeds.choose(change),
       act: (act, more) => this.deeds.act(act, more),
@@ -101,10 +103,15 @@ export class Editor {
     this.undo.onclick = () => void this.deeds.act('undo');
     this.redo.onclick = () => void this.deeds.act('redo');
     setText(this.title, name);
-    const bar = el('div', { class: 'bar' }, this.title, this.undo, this.redo, this.say);
+    const bar = el('div', { class: 'bar' }, this.title, this.undo, this.redo, this.say, this.again);
     const side = el('div', { class: 'steps' }, ...this.panels.map((p) => p.root));
     this.root.append(bar, el('div', { class: 'columns' }, this.views.root, side));
     this.endKeys = undoKeys((what) => void this.deeds.act(what));
+    this.endHands = handsAtWork(
+      this.root,
+      () => this.deeds.begin(),
+      () => this.deeds.end(),
+    );
     void this.follow();
   }
 
@@ -112,6 +119,7 @@ export class Editor {
     this.ended = true;
     window.clearTimeout(this.timer);
     this.endKeys();
+    this.endHands();
     this.scan.end();
     this.pose.end();
     this.retractors.end();
@@ -121,8 +129,26 @@ export class Editor {
   /** A refusal stands until something has been done. */
   private told(project: Project, ofDeed: boolean): void {
     if (this.ended) return;
-    if (ofDeed) setText(this.say, '');
+    if (ofDeed) this.tell('');
     this.show(project);
+  }
+
+  private tell(words: string): void {
+    setText(this.say, words);
+    this.again.hidden = true;
+  }
+
+  /** Fields are written anew: they may show what was not applied. */
+  private overtaken(again: (() => void) | null): void {
+    this.shown = '';
+    if (this.project) this.show(this.project);
+    this.tell(
+      again
+        ? text('The case was changed in another window. You see it as it is now. Your last change was not applied.')
+        : text('The case was changed in another window. You see it as it is now. What you pressed was not done.'),
+    );
+    this.again.hidden = again === null;
+    this.again.onclick = again;
   }
 
   private async follow(): Promise<void> {

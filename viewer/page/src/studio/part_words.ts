@@ -14,6 +14,12 @@ export function partText(name: string): string {
       return text('Left frontal lobe');
     case 'insula':
       return text('Insula');
+    case 'brainstem':
+      return text('Brainstem');
+    case 'callosum':
+      return text('Corpus callosum');
+    case 'diencephalon':
+      return text('Diencephalon');
     case 'retractors':
       return text('Retractors');
     case 'vessel':

@@ -18,6 +18,7 @@ export const refusals = (): string[] => [
   text('the case must be built first'),
   text('the case is at work; wait, or cancel it'),
   text('the project cannot be written: is the disk full?'),
+  text('there is no such project'),
   text('there is a scene of this name already'),
   text('a name has letters, digits, _ and - only, 64 at most'),
   text('only for pages on this machine and instructors'),

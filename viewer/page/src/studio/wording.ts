@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the case builder says for its command line, as what to do on this page, in the reader's language.
-import { said } from '../languages/said';
 import { languageTag } from '../languages/text';
+import { saidWithNames } from './named_messages';
 
 /** Options in messages of tools/case_builder, and what stands for them here. In this order. */
 const here: readonly [RegExp, string][] = [
@@ -32,7 +32,28 @@ const here: readonly [RegExp, string][] = [
   [/ ?\(--vertices (\d+)\)/g, ' ($1)'],
   [/: give --unit (\w+)/g, ': choose the unit $1'],
   [/with --unit if/g, 'if'],
+  [
+    /--neck-points turns the proposed neck, and none was found; give the whole plane with --neck/g,
+    'the two points turn the proposed neck, and none was found; choose another neck',
+  ],
   [/^--neck-points: /g, ''],
+  [/^--wall [^:]*: /g, ''],
+  [/^--rule (\d)\.(\w+)[^:]*: /g, 'Exercise $1, "$2": '],
+  [/insula case place FOLDER --spin "45 deg" --on, or/g, 'turn or move the vessel, or'],
+  [/cut shorter ones with --cut "[^"]*" \([^)]*\), once an end/g, 'cut shorter ones here'],
+  [/a higher --threshold or less --smooth may/g, 'a higher threshold may'],
+  [/; choose a larger --rebuild/g, '; is its unit right?'],
+  [/, in the frame of the input see wall\/vessel\.json/g, ''],
+  [/Make it anew from a grid: make the/g, 'Make the'],
+  [/or make the scenes again: insula case scenes FOLDER/g, 'or build again'],
+  [
+    /or place: insula case scenes FOLDER --clip NAME --lift "1 mm" --slide "1 mm" --turn "10 deg"/g,
+    'or move its blades',
+  ],
+  [
+    /The arms, the hands and the microscope stand about the fissure[^;"]* or move the retractors\./g,
+    'Move the retractors, or the vessel.',
+  ],
   [/name a point in it with --seed/g, 'put the seed into it'],
   [
     /name a point in it \(--seed\) and take what is near it \(--around "[^"]*"\)/g,
@@ -44,13 +65,15 @@ const here: readonly [RegExp, string][] = [
 export const inPageWords = (words: string): string =>
   here.reduce((all, [option, action]) => all.replace(option, action), words);
 
+/** Needs no translation. */
+const numbers = /^[\d., ]+$/;
 const fileName = /^(\/[^:]*|[^\s:]+\.[a-z\d]+)$/i;
 const place = /\(-?[\d.]+, -?[\d.]+, -?[\d.]+\)/g;
 const anyPlace = '(0, 0, 0)';
 
 /** A piece that is translated, or needs no translation. Places keep their signs. */
 function known(words: string, say: (english: string) => string): string | null {
-  if (fileName.test(words)) return words;
+  if (fileName.test(words) || numbers.test(words)) return words;
   const places = words.match(place) ?? [];
   const english = words.replace(place, anyPlace);
   const out = say(english);
@@ -83,7 +106,7 @@ export function translated(words: string, say: (english: string) => string): str
  */
 export function forThePage(words: string): string {
   const english = inPageWords(words);
-  return languageTag() === 'en' ? english : (translated(english, said) ?? english);
+  return languageTag() === 'en' ? english : (translated(english, saidWithNames) ?? english);
 }
 
 /** Why something was refused. */

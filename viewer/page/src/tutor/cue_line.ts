@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The words of a cue over the field, with the value that came near its limit.
 import { el, setText } from '../hud/dom';
+import { said } from '../languages/said';
 import { text } from '../languages/text';
 import type { HintView } from './state';
 
-/** "brain_force.left.force: 160 mN of 200 mN" */
+/** The words of what is watched: "brain_force.left.force" is "brain force, left, force". */
+const watchedText = (id: string): string =>
+  id
+    .replace(/ (left|right)$/, '.$1') // of a metric: its hand
+    .split('.')
+    .map((name) => said(name.replace(/_/g, ' ')))
+    .join(', ');
+
+/** "brain force, left, force: 160 mN, limit 200 mN" */
 export const whyText = (h: Pick<HintView, 'watched' | 'value' | 'limit'>): string =>
-  text('{watched}: {value}, limit {limit}', { watched: h.watched, value: h.value, limit: h.limit });
+  text('{watched}: {value}, limit {limit}', { watched: watchedText(h.watched), value: h.value, limit: h.limit });
 
 export class CueLine {
   readonly root = el('div', { class: 'cue', role: 'status', 'aria-live': 'assertive' });
