@@ -120,8 +120,8 @@ FindingSection wall_findings(const artery::Vessel& v, const Json& wall) {
   const std::vector<std::string> of_sac = artery::branches_of_sac(v);
   s.findings.push_back(check(of_sac.empty(), "branch_from_sac", "branches that leave the sac",
                              of_sac.empty() ? "none" : joined(of_sac),
-                             "A clip at the neck shuts them. Move the neck so that they stay on the vessel's side "
-                             "(--neck), and expect that a part of the dome is left."));
+                             "A clip at the neck shuts them. Move the neck so that they stay on the vessel's side, and "
+                             "expect that a part of the dome is left."));
   const auto width = v.dimensions.find("sac_width");
   Finding dome = check(v.dome_height > 1, "dome_low", "dome",
                        fmt::format("{:.2f} mm high, {:.2f} mm wide, dome to neck {:.2f}", v.dome_height,

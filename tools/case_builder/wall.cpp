@@ -218,7 +218,7 @@ Vessel uncrossed_wall_of(const artery::Surface& surface, const Options& o, std::
                        fmt::format("Only {:.1f} mm of each vessel were kept from the neck on: farther out the wall "
                                    "would run through itself.",
                                    shorter.keep),
-                       "Keep another length with --keep."});
+                       ""});
     return wall_of(surface, shorter, notes, progress);
   };
   if (!(o.keep > 0)) return kept(1);
