@@ -18,32 +18,35 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double half_blade = 0.7;      // mm: of a blade's width, with what lies between two vertices of the wall
 constexpr double yields = 1;            // mm by which the sac lets itself be pressed in by an open blade
+constexpr double roomy = 4;             // mm of opening more than the neck is wide: what goes beyond presses the lobes
 constexpr double past = 1.5;            // mm that the tips go beyond the flattened neck
 constexpr double off_floor = 0.4;       // mm that they keep from the floor, half their own width included
-constexpr double off_floor_open = 0.2;  // the same while they are open, for a short time
+constexpr double off_floor_open = 0.1;  // the same of open blades
 
 Vec3 across(const Vec3& a, const Vec3& n) { return (a - a.dot(n) * n).normalized(); }
 
-/// How far blades with their middle there have to be drawn back before their outer half is clear of the floor, shut and
-/// open. inward, closing: unit.
+/// How far blades with their middle there have to be drawn back before their outer half is clear of the floor: shut,
+/// and open for a short time. inward, closing: unit.
 double way_back(const Solid& floor, const ClipShape& clip, const Vec3& middle, const Vec3& inward,
                 const Vec3& closing) {
-  constexpr double farthest = 6, step = 0.1;
-  const auto clear_of_floor = [&](const Vec3& p, double by) {
-    const Nearest n = floor.nearest(p, farthest);
-    return !(n.found && n.distance < by);
-  };
-  for (double back = 0; back < farthest; back += step) {
-    bool clear = true;
-    for (const double along : {0.0, 0.25, 0.5}) {
-      const Vec3 p = middle + (along * clip.blade - back) * inward;
-      const double aside = clip.half_open((clip.middle + along * clip.blade * clip.inward).z());
-      clear = clear && clear_of_floor(p, off_floor) && clear_of_floor(p + aside * closing, off_floor_open) &&
-              clear_of_floor(p - aside * closing, off_floor_open);
+  constexpr double farthest = 6, step = 0.1, most_for_open = 1;
+  const auto first_clear = [&](double from, double to, const std::vector<double>& sides, double off) {
+    for (double back = from; back < to; back += step) {
+      bool clear = true;
+      for (const double along : {0.0, 0.25, 0.5}) {
+        const double aside = clip.half_open((clip.middle + along * clip.blade * clip.inward).z());
+        for (const double side : sides) {
+          const Vec3 p = middle + (along * clip.blade - back) * inward + side * aside * closing;
+          const Nearest n = floor.nearest(p, farthest);
+          clear = clear && !(n.found && n.distance < off);
+        }
+      }
+      if (clear) return back;
     }
-    if (clear) return back;
-  }
-  return farthest;
+    return to;
+  };
+  const double shut = first_clear(0, farthest, {0}, off_floor);
+  return first_clear(shut, std::min(shut + most_for_open, farthest), {-1, 1}, off_floor_open);
 }
 
 /// Height of the blades over the neck's plane, mm: a little towards the parent, as the neck bulges when it is pressed
@@ -204,7 +207,8 @@ std::vector<ClipPlan> clip_plans(const artery::Vessel& v, const Solid& floor, co
         plan.branch_caught = branch_between_blades(v, clip, plan.pose);
         plan.cost = std::pow(plan.off_view / 12, 2) + std::pow(angle / 60, 2) +
                     1.2 * std::max(0.0, needed - clip.blade) + 0.35 * std::max(0.0, clip.blade - needed - 1) +
-                    1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening) + 1.2 * back + 8 * plan.branch_caught +
+                    1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening) +
+                    0.6 * std::max(0.0, clip.opening - size.across - roomy) + 1.2 * back + 8 * plan.branch_caught +
                     1.5 * std::max(0.0, plan.dome_outside - yields);
         out.push_back(std::move(plan));
       }

@@ -225,7 +225,7 @@ namespace {
 
 /// Whether two plans do nearly the same: blades of like length from like directions, which pass the dome or do not.
 bool alike(const ClipPlan& a, const ClipPlan& b) {
-  const bool turned_apart = std::abs(a.at.turn - b.at.turn) > 44;
+  const bool turned_apart = std::abs(a.at.turn - b.at.turn) > 29;
   const bool other_shape = std::abs(a.clip.inward.y() - b.clip.inward.y()) > 0.2 || a.clip.kind != b.clip.kind;
   const bool bent = std::abs(a.clip.inward.y()) > 0.1;  // the others are the same when they are mirrored
   return !turned_apart && !other_shape && !(bent && a.at.mirrored != b.at.mirrored) &&
