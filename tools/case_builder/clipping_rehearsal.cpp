@@ -68,7 +68,7 @@ class ClippingTrial {
     for (const MeasureState& m : log.measures()) {
       if (!m.known) continue;
       const std::string_view id = m.id;
-      if (id == "grade") out.grade = int(std::lround(m.value));
+      if (id == "grade") out.grade = int(std::lround(m.value)), out.judged = true;
       else if (id == "remnant_pct") out.remnant = 0.01 * m.value;
       else if (id == "tip_past_neck") out.tip_past_neck = m.value;
       else if (id == "slit") out.slit = m.value;
@@ -171,7 +171,7 @@ class ClipSearch {
     /// Corrections in vain count against a placement.
     double far_from_sound() const {
       const bool too_low = outcome.shut() && outcome.least_flow() < 0.5;
-      return outcome.cost() - (too_low ? 10 : 0) - 4 * std::log2(fineness);
+      return outcome.cost() - (too_low ? 20 : 0) - 4 * std::log2(fineness);
     }
   };
 
@@ -206,11 +206,11 @@ double ClippingOutcome::least_flow() const {
   return least;
 }
 
-// A branch that is shut is worse than a neck that is left open.
+// A branch that is shut is worse than a neck that is left open, and a clip that came off worse than one that stays.
 double ClippingOutcome::cost() const {
-  return (goal ? 0 : 3) + grade + 5 * remnant + 14 * std::max(0.0, 0.9 - least_flow()) +
-         2 * std::max(0.0, stenosis - 0.3) + std::min(faults, 6) + (ruptured ? 10 : 0) +
-         0.4 * std::max(0.0, -tip_past_neck) + 0.5 * slit;
+  return (goal ? 0 : 3) + (judged ? 0 : 4) + grade + 5 * remnant + (least_flow() < 0.5 ? 10 : 0) +
+         14 * std::max(0.0, 0.9 - least_flow()) + 2 * std::max(0.0, stenosis - 0.3) + std::min(faults, 6) +
+         (ruptured ? 10 : 0) + 0.4 * std::max(0.0, -tip_past_neck) + 0.5 * slit;
 }
 
 std::string clipping_motion(const ClipPlan& plan) {
