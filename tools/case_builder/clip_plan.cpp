@@ -18,17 +18,17 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double half_blade = 0.7;      // mm: of a blade's width, with what lies between two vertices of the wall
 constexpr double yields = 1;            // mm by which the sac lets itself be pressed in by an open blade
-constexpr double roomy = 4;             // mm of opening more than the neck is wide: what goes beyond presses the lobes
 constexpr double past = 1.5;            // mm that the tips go beyond the flattened neck
 constexpr double off_floor = 0.4;       // mm that they keep from the floor, half their own width included
 constexpr double off_floor_open = 0.1;  // the same of open blades
+constexpr double large_opening = 10;    // mm: wider jaws press the lobes, so they are for domes that need them
 
 Vec3 across(const Vec3& a, const Vec3& n) { return (a - a.dot(n) * n).normalized(); }
 
-/// How far blades with their middle there have to be drawn back before their outer half is clear of the floor: shut,
-/// and open for a short time. inward, closing: unit.
-double way_back(const Solid& floor, const ClipShape& clip, const Vec3& middle, const Vec3& inward,
-                const Vec3& closing) {
+/// How far blades with their middle there have to be drawn back before their outer half is clear of the floor.
+/// inward, closing: unit.
+double way_back(const Solid& floor, const ClipShape& clip, const Vec3& middle, const Vec3& inward, const Vec3& closing,
+                Care care) {
   constexpr double farthest = 6, step = 0.1, most_for_open = 1;
   const auto first_clear = [&](double from, double to, const std::vector<double>& sides, double off) {
     for (double back = from; back < to; back += step) {
@@ -46,6 +46,7 @@ double way_back(const Solid& floor, const ClipShape& clip, const Vec3& middle, c
     return to;
   };
   const double shut = first_clear(0, farthest, {0}, off_floor);
+  if (care == Care::usual) return shut;
   return first_clear(shut, std::min(shut + most_for_open, farthest), {-1, 1}, off_floor_open);
 }
 
@@ -183,7 +184,7 @@ double branch_between_blades(const artery::Vessel& v, const ClipShape& clip, con
 }
 
 std::vector<ClipPlan> clip_plans(const artery::Vessel& v, const Solid& floor, const std::vector<ClipShape>& clips,
-                                 const Options& o, const Approach& approach) {
+                                 const Options& o, const Approach& approach, Care care) {
   const artery::Neck& neck = *v.neck;
   const Vec3& to_surgeon = approach.to_surgeon;
   std::vector<ClipPlan> out;
@@ -195,9 +196,10 @@ std::vector<ClipPlan> clip_plans(const artery::Vessel& v, const Solid& floor, co
     const double needed = 0.5 * size.perimeter + past, lift = o.lift.value_or(default_lift(neck.diameter));
     for (const ClipShape& clip : clips) {
       if (!o.clip.empty() ? clip.name != o.clip : clip.kind == "temporary" || clip.kind == "mini_temporary") continue;
+      if (o.clip.empty() && care == Care::usual && clip.opening > large_opening) continue;
       const double slide = o.slide.value_or(std::max(0.0, needed - 0.5 * clip.blade - 0.25 * size.perimeter + 0.7));
       const Vec3 middle = neck.centre + lift * neck.normal - slide * outward;
-      const double back = o.slide ? 0 : way_back(floor, clip, middle, -outward, neck.normal.cross(outward));
+      const double back = o.slide ? 0 : way_back(floor, clip, middle, -outward, neck.normal.cross(outward), care);
       for (const bool mirrored : {false, true}) {
         ClipPlan plan;
         plan.clip = clip, plan.to_surgeon = to_surgeon, plan.needed = needed, plan.drawn_back = back;
@@ -207,8 +209,7 @@ std::vector<ClipPlan> clip_plans(const artery::Vessel& v, const Solid& floor, co
         plan.branch_caught = branch_between_blades(v, clip, plan.pose);
         plan.cost = std::pow(plan.off_view / 12, 2) + std::pow(angle / 60, 2) +
                     1.2 * std::max(0.0, needed - clip.blade) + 0.35 * std::max(0.0, clip.blade - needed - 1) +
-                    1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening) +
-                    0.6 * std::max(0.0, clip.opening - size.across - roomy) + 1.2 * back + 8 * plan.branch_caught +
+                    1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening) + 1.2 * back + 8 * plan.branch_caught +
                     1.5 * std::max(0.0, plan.dome_outside - yields);
         out.push_back(std::move(plan));
       }
@@ -268,7 +269,8 @@ ApplierPose plan_temporary(const artery::Vessel& v, const Solid& floor, const Cl
   const double tips = 0.5 * std::numbers::pi * c.radius[at] + past, slide = tips - 0.5 * clip.blade;
   const Vec3 middle = c.points[at] - slide * outward;
   const Vec3 closing = along.cross(outward).normalized();
-  return applier_pose(clip, middle + way_back(floor, clip, middle, -outward, closing) * outward, -outward, closing);
+  const double back = way_back(floor, clip, middle, -outward, closing, Care::usual);
+  return applier_pose(clip, middle + back * outward, -outward, closing);
 }
 
 }  // namespace insula::case_builder

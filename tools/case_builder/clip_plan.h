@@ -75,10 +75,16 @@ double branch_between_blades(const artery::Vessel& vessel, const ClipShape& clip
 /// How far the sac reaches out of the space between the open blades of an applier that comes along its shaft, mm.
 double outside_of_blades(const artery::Vessel& vessel, const ClipShape& clip, const ApplierPose& pose);
 
+/// Which clips are tried, and which blades keep off the floor.
+enum class Care {
+  usual,  ///< clips that open by less than 10 mm; shut blades
+  more    ///< all clips; open blades too, where a millimetre is enough for that
+};
+
 /// The options' choices for a placed vessel's neck, best first. The tips keep off `floor` (which does not
 /// give way: blades that run against it are lifted off the neck). Throws InputError when a wanted clip does not exist.
 std::vector<ClipPlan> clip_plans(const artery::Vessel& vessel, const Solid& floor, const std::vector<ClipShape>& clips,
-                                 const Options& options, const Approach& approach);
+                                 const Options& options, const Approach& approach, Care care = Care::usual);
 /// What is wrong with a plan.
 std::vector<Note> notes_of(const ClipPlan& plan);
 

@@ -68,7 +68,7 @@ class ClippingTrial {
     for (const MeasureState& m : log.measures()) {
       if (!m.known) continue;
       const std::string_view id = m.id;
-      if (id == "grade") out.grade = int(std::lround(m.value)), out.judged = true;
+      if (id == "grade") out.grade = int(std::lround(m.value));
       else if (id == "remnant_pct") out.remnant = 0.01 * m.value;
       else if (id == "tip_past_neck") out.tip_past_neck = m.value;
       else if (id == "slit") out.slit = m.value;
@@ -95,18 +95,14 @@ double rounded_sum(double a, double b) { return 1e-3 * std::round(1e3 * (a + b))
 /// What a surgeon would try next, the most promising first.
 std::vector<BladePlacement> corrections(const BladePlacement& at, const ClippingOutcome& seen, double fineness) {
   const double step = fineness * (seen.shut() ? 1 : 2);
-  const auto moved = [&](double lift, double slide, double turn, double by) {
+  const auto moved = [&](double lift, double slide, double turn) {
     BladePlacement p = at;
-    p.lift = rounded_sum(p.lift, by * lift), p.slide = rounded_sum(p.slide, by * slide);
+    p.lift = rounded_sum(p.lift, step * lift), p.slide = rounded_sum(p.slide, step * slide);
     p.turn = rounded_sum(p.turn, fineness * turn);
     return p;
   };
-  // A branch that is shut stays shut over short moves: farther up, and from another side.
-  if (seen.least_flow() < 0.5)
-    return {moved(1.2, 0, 0, fineness),   moved(2.4, 0, 0, fineness),  moved(1.2, 0, 30, fineness),
-            moved(1.2, 0, -30, fineness), moved(1.2, -2, 0, fineness), moved(1.2, 2, 0, fineness)};
-  const BladePlacement deeper = moved(0, 1.2, 0, step), back = moved(0, -1.2, 0, step), higher = moved(0.6, 0, 0, step),
-                       lower = moved(-0.6, 0, 0, step), left = moved(0, 0, 15, step), right = moved(0, 0, -15, step);
+  const BladePlacement deeper = moved(0, 1.2, 0), back = moved(0, -1.2, 0), higher = moved(0.6, 0, 0),
+                       lower = moved(-0.6, 0, 0), left = moved(0, 0, 15), right = moved(0, 0, -15);
   // Blades that narrow a branch, and leave the neck open, lie below it.
   if (seen.least_flow() < 0.9 || (!seen.shut() && seen.stenosis > 0.3))
     return {higher, left, right, back, deeper, lower};
@@ -123,78 +119,54 @@ class ClipSearch {
         most_plays_(most_plays),
         progress_(progress) {}
 
-  /// Plays the plans that have not been played, two by two. Ends with the first pair that has a sound one, or one that
-  /// costs less than `enough`. Returns whether one does.
-  bool play(std::vector<ClipPlan> plans, double enough) {
+  /// Plays the plans that have not been played, two by two. Ends with the first pair that has a sound one, or if
+  /// `all` is false a better one than the best. Returns whether there was a better one.
+  bool play(std::vector<ClipPlan> plans, bool all) {
     for (ClipPlan& plan : plans) plan.lay(neck_, plan.at);
     std::erase_if(plans, [&](const ClipPlan& p) {
-      return std::any_of(played_.begin(), played_.end(),
-                         [&](const Played& k) { return k.plan.clip.name == p.clip.name && k.plan.at == p.at; });
+      return std::any_of(known_.begin(), known_.end(),
+                         [&](const ClipPlan& k) { return k.clip.name == p.clip.name && k.at == p.at; });
     });
-    bool reached = false;
-    for (std::size_t k = 0; k < plans.size() && best_.plays < most_plays_ && !reached; k += trials_.size()) {
+    bool better = false;
+    for (std::size_t k = 0; k < plans.size() && best_.plays < most_plays_; k += trials_.size()) {
       std::vector<std::future<ClippingOutcome>> outcomes;
       for (std::size_t i = 0; i < trials_.size() && k + i < plans.size(); ++i)
         outcomes.push_back(
             std::async(std::launch::async, [this, i, &plan = plans[k + i]] { return trials_[i].play(plan); }));
-      for (std::size_t i = 0; i < outcomes.size(); ++i)
-        reached = take(plans[k + i], outcomes[i].get()) < enough || reached;
-      if (best_.outcome.sound()) break;
+      for (std::size_t i = 0; i < outcomes.size(); ++i) better = take(plans[k + i], outcomes[i].get()) || better;
+      if (best_.outcome.sound() || (better && !all)) break;
     }
-    return reached;
+    return better;
   }
-  /// Tries placements near the most promising one.
+  /// Tries placements near the best one.
   void correct() {
-    const std::size_t from = most_promising();
-    const double cost = played_[from].outcome.cost();
     std::vector<ClipPlan> near;
-    for (const BladePlacement& at : corrections(played_[from].plan.at, played_[from].outcome, played_[from].fineness)) {
-      near.push_back(played_[from].plan);
+    for (const BladePlacement& at : corrections(best_.plan.at, best_.outcome, fineness_)) {
+      near.push_back(best_.plan);
       near.back().at = at;
     }
-    if (!play(std::move(near), cost)) played_[from].fineness *= 0.5;
+    if (!play(std::move(near), false)) fineness_ *= 0.5;
   }
-  bool goes_on() const {
-    return !best_.outcome.sound() && best_.plays < most_plays_ && played_[most_promising()].fineness > finest;
-  }
+  bool goes_on() const { return !best_.outcome.sound() && best_.plays < most_plays_ && fineness_ > finest; }
   const RehearsedClip& best() const { return best_; }
 
  private:
   static constexpr double finest = 0.3;
 
-  struct Played {
-    ClipPlan plan;
-    ClippingOutcome outcome;
-    double fineness = 1;  ///< of the next corrections
-
-    /// The less, the nearer a sound placement seems. A closed neck beside a shut branch is mostly a matter of height.
-    /// Corrections in vain count against a placement.
-    double far_from_sound() const {
-      const bool too_low = outcome.shut() && outcome.least_flow() < 0.5;
-      return outcome.cost() - (too_low ? 20 : 0) - 4 * std::log2(fineness);
-    }
-  };
-
-  std::size_t most_promising() const {
-    return std::size_t(
-        std::min_element(played_.begin(), played_.end(),
-                         [](const Played& a, const Played& b) { return a.far_from_sound() < b.far_from_sound(); }) -
-        played_.begin());
-  }
-
-  /// Returns its cost.
-  double take(const ClipPlan& plan, const ClippingOutcome& outcome) {
-    played_.push_back({plan, outcome});
-    if (best_.plays++ == 0 || outcome.cost() < best_.outcome.cost()) best_.plan = plan, best_.outcome = outcome;
+  bool take(const ClipPlan& plan, const ClippingOutcome& outcome) {
+    known_.push_back(plan);
+    const bool better = best_.plays++ == 0 || outcome.cost() < best_.outcome.cost();
+    if (better) best_.plan = plan, best_.outcome = outcome;
     progress_.share(double(best_.plays) / most_plays_);
-    return outcome.cost();
+    return better;
   }
 
   std::array<ClippingTrial, 2> trials_;
   artery::Neck neck_;
   int most_plays_;
   Progress& progress_;
-  std::vector<Played> played_;
+  std::vector<ClipPlan> known_;  ///< have been played
+  double fineness_ = 1;
   RehearsedClip best_;
 };
 
@@ -206,11 +178,11 @@ double ClippingOutcome::least_flow() const {
   return least;
 }
 
-// A branch that is shut is worse than a neck that is left open, and a clip that came off worse than one that stays.
+// A branch that is shut is worse than a neck that is left open.
 double ClippingOutcome::cost() const {
-  return (goal ? 0 : 3) + (judged ? 0 : 4) + grade + 5 * remnant + (least_flow() < 0.5 ? 10 : 0) +
-         14 * std::max(0.0, 0.9 - least_flow()) + 2 * std::max(0.0, stenosis - 0.3) + std::min(faults, 6) +
-         (ruptured ? 10 : 0) + 0.4 * std::max(0.0, -tip_past_neck) + 0.5 * slit;
+  return (goal ? 0 : 3) + grade + 5 * remnant + 14 * std::max(0.0, 0.9 - least_flow()) +
+         2 * std::max(0.0, stenosis - 0.3) + std::min(faults, 6) + (ruptured ? 10 : 0) +
+         0.4 * std::max(0.0, -tip_past_neck) + 0.5 * slit;
 }
 
 std::string clipping_motion(const ClipPlan& plan) {
@@ -223,13 +195,13 @@ std::string clipping_motion(const ClipPlan& plan) {
 
 namespace {
 
-/// Whether two plans do nearly the same: blades of like length from like directions, which pass the dome or do not.
+/// Whether two plans do nearly the same: blades of like length from like directions.
 bool alike(const ClipPlan& a, const ClipPlan& b) {
   const bool turned_apart = std::abs(a.at.turn - b.at.turn) > 29;
   const bool other_shape = std::abs(a.clip.inward.y() - b.clip.inward.y()) > 0.2 || a.clip.kind != b.clip.kind;
   const bool bent = std::abs(a.clip.inward.y()) > 0.1;  // the others are the same when they are mirrored
   return !turned_apart && !other_shape && !(bent && a.at.mirrored != b.at.mirrored) &&
-         std::abs(a.clip.blade - b.clip.blade) < 2.5 && a.meets_dome() == b.meets_dome();
+         std::abs(a.clip.blade - b.clip.blade) < 2.5;
 }
 
 }  // namespace
@@ -271,7 +243,7 @@ RehearsedClip rehearse_clipping(const fs::path& scene, const fs::path& motion, c
                                 const std::vector<ClipPlan>& tried, bool correct, int most_plays, Progress& progress) {
   write_text(motion, clipping_motion(tried.front()));  // the scene names it
   ClipSearch search(scene, at_rest, most_plays, progress);
-  search.play(correct ? at_two_heights(tried) : tried, -infinite);
+  search.play(correct ? at_two_heights(tried) : tried, true);
   while (correct && search.goes_on()) search.correct();
   return search.best();
 }

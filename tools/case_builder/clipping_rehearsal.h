@@ -14,7 +14,6 @@ namespace insula::case_builder {
 /// What one placement of the clip came to.
 struct ClippingOutcome {
   bool goal = false;                                  ///< the exercise's goal was held
-  bool judged = false;                                ///< a clip lies at the neck, so that there is a grade
   int grade = 5;                                      ///< Sindou
   double remnant = 1;                                 ///< share of the neck above which a remnant is left
   double tip_past_neck = 0;                           ///< mm

@@ -67,9 +67,8 @@ void write_clipping(const SceneFacts& f, const CaseFolder& folder) {
 
 /// The best of the ranked plans in the running scene. A plan that an author has fixed is played, and left as it is.
 RehearsedClip rehearsed_clip(SceneFacts f, const CaseFolder& folder, const fs::path& project, const artery::Vessel& v,
-                             const std::vector<ClipPlan>& ranked, const Options& o, Progress& progress) {
+                             const std::vector<ClipPlan>& ranked, const Options& o, int plays, Progress& progress) {
   constexpr std::size_t most_plans = 4;
-  progress.step("rehearsing the clipping");
   const bool fixed = o.lift && o.slide && o.turn;
   const std::vector<ClipPlan> tried = distinct_plans(ranked, fixed ? 1 : most_plans);
   std::vector<std::string> names;
@@ -78,7 +77,7 @@ RehearsedClip rehearsed_clip(SceneFacts f, const CaseFolder& folder, const fs::p
   f.clips = on_tray(names);
   f.assets = link_assets(folder, project, f.clips, f.approach);
   write_clipping(f, folder);
-  return rehearse_clipping(exercise_file(folder, 3), folder.path / "3_clipping_steady.csv", v, tried, !fixed, o.plays,
+  return rehearse_clipping(exercise_file(folder, 3), folder.path / "3_clipping_steady.csv", v, tried, !fixed, plays,
                            progress);
 }
 
@@ -125,7 +124,17 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   f.assets = link_assets(folder, project, f.clips, f.approach);
   write_rules(f, folder);
   RehearsedClip clipped{ranked.front(), {}, 0};
-  if (o.rehearse) clipped = rehearsed_clip(f, folder, project, v, ranked, o, progress);
+  if (o.rehearse) {
+    progress.step("rehearsing the clipping");
+    clipped = rehearsed_clip(f, folder, project, v, ranked, o, o.plays, progress);
+    // With more care, and with large clips, where that helps.
+    if (!clipped.outcome.sound() && !(o.lift && o.slide && o.turn)) {
+      const auto with_care = clip_plans(v, floor, clips, o, approach, Care::more);
+      RehearsedClip again = rehearsed_clip(f, folder, project, v, with_care, o, (o.plays + 1) / 2, progress);
+      again.plays += clipped.plays;
+      if (again.outcome.sound()) clipped = std::move(again);
+    }
+  }
   const ClipPlan& plan = clipped.plan;
   const std::vector<Note> wrong = o.rehearse ? notes_of(clipped) : notes_of(plan);
   notes.insert(notes.end(), wrong.begin(), wrong.end());
