@@ -81,6 +81,19 @@ RehearsedClip rehearsed_clip(SceneFacts f, const CaseFolder& folder, const fs::p
                            progress);
 }
 
+/// The same. Where no placement is sound, plans with more care are played too, and taken if one of them is.
+template <class Plans>
+RehearsedClip sound_clip(const SceneFacts& f, const CaseFolder& folder, const fs::path& project,
+                         const artery::Vessel& v, const std::vector<ClipPlan>& ranked, const Options& o,
+                         Progress& progress, const Plans& with_more_care) {
+  progress.step("rehearsing the clipping");
+  RehearsedClip out = rehearsed_clip(f, folder, project, v, ranked, o, o.plays, progress);
+  if (out.outcome.sound() || (o.lift && o.slide && o.turn)) return out;
+  RehearsedClip careful = rehearsed_clip(f, folder, project, v, with_more_care(), o, (o.plays + 1) / 2, progress);
+  careful.plays += out.plays;
+  return careful.outcome.sound() ? careful : out;
+}
+
 /// Throws InputError if a change of a rule is none that its declaration allows, before the long work.
 void write_rules(const SceneFacts& f, const CaseFolder& folder) {
   Json all = Json::array();
@@ -124,17 +137,9 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   f.assets = link_assets(folder, project, f.clips, f.approach);
   write_rules(f, folder);
   RehearsedClip clipped{ranked.front(), {}, 0};
-  if (o.rehearse) {
-    progress.step("rehearsing the clipping");
-    clipped = rehearsed_clip(f, folder, project, v, ranked, o, o.plays, progress);
-    // With more care, and with large clips, where that helps.
-    if (!clipped.outcome.sound() && !(o.lift && o.slide && o.turn)) {
-      const auto with_care = clip_plans(v, floor, clips, o, approach, Care::more);
-      RehearsedClip again = rehearsed_clip(f, folder, project, v, with_care, o, (o.plays + 1) / 2, progress);
-      again.plays += clipped.plays;
-      if (again.outcome.sound()) clipped = std::move(again);
-    }
-  }
+  if (o.rehearse)
+    clipped = sound_clip(f, folder, project, v, ranked, o, progress,
+                         [&] { return clip_plans(v, floor, clips, o, approach, Care::more); });
   const ClipPlan& plan = clipped.plan;
   const std::vector<Note> wrong = o.rehearse ? notes_of(clipped) : notes_of(plan);
   notes.insert(notes.end(), wrong.begin(), wrong.end());
