@@ -3,10 +3,10 @@
 // threshold costs.
 import { expect, it } from 'vitest';
 import { Vector3 } from 'three';
-import { Block, scanFactsOf } from '../src/studio/scan/block';
+import { Block, scanFactsOf, type Vec } from '../src/studio/scan/block';
 import { cutThrough, otherSide, partBeyond, smallerSide } from '../src/studio/scan/cut_plane';
 import { surfaceNet } from '../src/studio/scan/surface_net';
-import { SampledScan, type Stored, type Vec } from '../src/studio/scan/sampled_scan';
+import { SampledScan, type Stored } from '../src/studio/scan/sampled_scan';
 import { mostNodes, vesselGrid, type Wanted } from '../src/studio/scan/vessel_grid';
 
 function voxels(size: Vec, value: (i: number, j: number, k: number) => number): Int16Array {

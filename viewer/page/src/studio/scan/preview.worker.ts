@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finds the vessel in a scan and its surface, beside the page's own thread.
-import { SampledScan, type Stored, type Vec } from './sampled_scan';
+import type { Vec } from './block';
+import { SampledScan, type Stored } from './sampled_scan';
 import { surfaceNet } from './surface_net';
 import { vesselGrid, type VesselGrid, type Wanted } from './vessel_grid';
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A scan on the nodes of a coarser grid. All its voxels are read once, and not again while only the threshold moves.
+import type { Vec } from './block';
 
-export type Vec = [number, number, number];
 export type Stored = Uint8Array | Int16Array;
 
 export interface Part {

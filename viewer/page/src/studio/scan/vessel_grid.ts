@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What of a scan is vessel, on the nodes of a coarser grid: the connected part that the case builder would keep
 // (tools/case_builder/grid_surface.cpp).
-
-import { SampledScan, type Vec } from './sampled_scan';
+import type { Vec } from './block';
+import type { SampledScan } from './sampled_scan';
 
 /** What the author has chosen, in voxels of the block and in stored values. */
 export interface Wanted {
