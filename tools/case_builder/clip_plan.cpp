@@ -21,7 +21,8 @@ constexpr double yields = 1;            // mm by which the sac lets itself be pr
 constexpr double past = 1.5;            // mm that the tips go beyond the flattened neck
 constexpr double off_floor = 0.4;       // mm that they keep from the floor, half their own width included
 constexpr double off_floor_open = 0.1;  // the same of open blades
-constexpr double large_opening = 10;    // mm: wider jaws press the lobes, so they are for domes that need them
+constexpr double large_opening =
+    10;  // mm at the tips: wider jaws press the lobes, so they are for domes that need them
 
 Vec3 across(const Vec3& a, const Vec3& n) { return (a - a.dot(n) * n).normalized(); }
 
@@ -196,7 +197,7 @@ std::vector<ClipPlan> clip_plans(const artery::Vessel& v, const Solid& floor, co
     const double needed = 0.5 * size.perimeter + past, lift = o.lift.value_or(default_lift(neck.diameter));
     for (const ClipShape& clip : clips) {
       if (!o.clip.empty() ? clip.name != o.clip : clip.kind == "temporary" || clip.kind == "mini_temporary") continue;
-      if (o.clip.empty() && care == Care::usual && clip.opening > large_opening) continue;
+      if (o.clip.empty() && care == Care::usual && clip.tips_open() > large_opening) continue;
       const double slide = o.slide.value_or(std::max(0.0, needed - 0.5 * clip.blade - 0.25 * size.perimeter + 0.7));
       const Vec3 middle = neck.centre + lift * neck.normal - slide * outward;
       const double back = o.slide ? 0 : way_back(floor, clip, middle, -outward, neck.normal.cross(outward), care);

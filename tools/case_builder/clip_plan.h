@@ -20,6 +20,8 @@ struct ClipShape {
 
   /// From the plane between the blades to an open one where it is at the height z, mm.
   double half_open(double z) const { return (grip.z() - z) * open_sine; }
+  /// Between the tips of open blades, mm.
+  double tips_open() const { return 2 * half_open((middle + 0.5 * blade * inward).z()); }
 };
 /// All clips of meshes/clips with straight clamping lines that lie in the clip's own plane. Throws InputError.
 std::vector<ClipShape> read_clips(const fs::path& project);
@@ -77,7 +79,7 @@ double outside_of_blades(const artery::Vessel& vessel, const ClipShape& clip, co
 
 /// Which clips are tried, and which blades keep off the floor.
 enum class Care {
-  usual,  ///< clips that open by less than 10 mm; shut blades
+  usual,  ///< clips whose tips open by less than 10 mm; shut blades
   more    ///< all clips; open blades too, where a millimetre is enough for that
 };
 
