@@ -19,17 +19,18 @@
 4_rupture_late          the same rupture, but nobody clips
 two_clips_steady        the clips of SHARED, in OUTPUT_FOLDER/../cases; two_clips_one_clip: the first one alone
 clipping_*_steady       the same as 3_clipping_steady for the other arteries, in OUTPUT_FOLDER/../cases
-A clip's place is given by where its blades' middle is, where they point to and in which direction they close; the
-applier's pose follows from the clip's own grip. The same input gives the same bytes.
+The same input gives the same bytes.
 """
 import json
 import math
 import pathlib
 import sys
 
+import rupture
+from clip_hand import OUT_OF_FIELD, ROOT, Clip, Script, close_clip, last_q, open_where_it_lies, place_clip
+from clip_hand import steady_outside
 from vectors import across, add, cross, dot, quaternion, turned, unit
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = "anterior_superior"
 # Where the blades of an angled clip lie across the neck of each artery. The wall moves with the blades, so these are
 # poses of the hand and not of the closed clip. They lie amid the placements that leave no remnant. The tips point away
@@ -71,126 +72,7 @@ PROXIMAL_GRIP = (53.7, 21.4, -14.0)
 # Where the Doppler probe listens: share of a centreline, and how far from its axis the tip is held, mm. It comes along
 # the view, since retractors and bone are in other ways.
 LISTENED = {"parent": (0.8, 3.4), "superior": (0.5, 2.4), "inferior": (0.62, 2.6), "sac": (0.65, 4.4)}
-OUT_OF_FIELD = 32.0  # mm along the applier's shaft
 VIEW = (0.93, 0.25, 0.27)  # towards the surgeon
-
-
-class Clip:
-    """A clip of the library: its grip, the middle of its blades and the blades' direction, in its own frame (mm)."""
-
-    def __init__(self, name):
-        data = json.loads((ROOT / "meshes/clips" / name / "tool.json").read_text())["clip"]
-        self.name = name
-        self.grip = data["grip"]["position"]
-        line = data["blade_line"]
-        self.middle = [0.5 * (a + b) for a, b in zip(line[0], line[-1])]
-        self.inward = unit(add(line[-1], line[0], -1))  # from the root to the tip
-
-    def applier_pose(self, middle, inward, closing):
-        """Pose of the applier (mm, quaternion, shaft direction) that brings the blades' middle there."""
-        inward = across(inward, closing)
-        # The clip's frame: x closes, the blades' direction is `self.inward` in its y-z plane.
-        side = cross(closing, inward)
-        c, s = -self.inward[2], self.inward[1]  # inward = (0, s, -c)
-        y = add([s * v for v in inward], side, c)
-        z = add([-c * v for v in inward], side, s)
-        rotate = lambda v: add(add([v[0] * k for k in closing], y, v[1]), z, v[2])
-        tip = add(middle, rotate(self.middle), -1)
-        return add(tip, rotate(self.grip)), quaternion(closing, y, z), z
-
-
-class Hand:
-    def __init__(self, side):
-        self.side, self.rows, self.t = side, [], 0.0
-
-    def key(self, seconds, position, q, button1=0, button2=0):
-        self.t = round(self.t + seconds, 4)
-        self.rows.append(
-            (
-                self.t,
-                f"{self.t:g},{self.side},"
-                + ",".join(f"{v / 1000:.6f}" for v in position)
-                + ","
-                + ",".join(f"{v:.6f}" for v in q)
-                + f",{button1},{button2}",
-            )
-        )
-
-
-class Script:
-    def __init__(self):
-        self.left, self.right, self.commands = Hand("left"), Hand("right"), []
-
-    def command(self, time, verb, argument):
-        self.commands.append((time, f"{time:g},command,{verb},{argument}"))
-
-    def text(self):
-        rows = sorted(self.left.rows + self.right.rows + self.commands, key=lambda r: r[0])
-        return "time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n" + "\n".join(r[1] for r in rows) + "\n"
-
-    def write(self, path):
-        path.write_text(self.text())
-
-
-def place_clip(hand, pose, press=(0, 0, 0), approach=2.5, close=1.6, wait=0.6, open_at=OUT_OF_FIELD, last=0.8):
-    """From outside the field: go in, open the blades `open_at` mm before the place, take `last` seconds for the last
-    3 mm, let the spring close while the hand moves by `press`, move back, let go, leave."""
-    position, q, shaft = pose
-    outside = add(position, shaft, OUT_OF_FIELD)
-    opened = add(position, shaft, open_at)
-    near = add(position, shaft, 3)
-    hand.key(0.3, outside, q)
-    if open_at < OUT_OF_FIELD:
-        hand.key(approach, opened, q)
-    hand.key(0.05, opened, q, 1)
-    hand.key(0.5, opened, q, 1)
-    hand.key(approach if open_at == OUT_OF_FIELD else 0.6, near, q, 1)
-    close_clip(hand, pose, press, close, wait, last)
-
-
-def close_clip(hand, pose, press=(0, 0, 0), close=1.6, wait=0.6, last=0.8):
-    """With an open clip near its place: go there, let the spring close while the hand moves by `press`, move back, let
-    go, leave."""
-    position, q, shaft = pose
-    pressed = add(position, press)
-    hand.key(last, position, q, 1)
-    hand.key(0.3, position, q, 1)
-    hand.key(0.02, position, q)
-    hand.key(0.25, pressed, q)
-    hand.key(0.75, pressed, q)
-    hand.key(0.3, position, q)
-    hand.key(close - 1.3, position, q)
-    hand.key(0.02, position, q, 0, 1)
-    hand.key(0.2, position, q, 0, 1)
-    hand.key(0.02, position, q)
-    hand.key(wait, position, q)
-    hand.key(0.8, add(position, shaft, 4), q)
-    hand.key(1.5, add(position, shaft, OUT_OF_FIELD), q)
-
-
-def open_where_it_lies(hand, pose, approach=2.5):
-    """Back onto a clip in the field: grip it and open it."""
-    position, q, shaft = pose
-    hand.key(0.3, add(position, shaft, OUT_OF_FIELD), q)
-    hand.key(approach, add(position, shaft, 2), q)
-    hand.key(0.6, position, q)
-    hand.key(0.3, position, q)
-    hand.key(0.02, position, q, 0, 1)
-    hand.key(0.2, position, q, 0, 1)
-    hand.key(0.02, position, q)
-    hand.key(0.4, position, q)
-    hand.key(0.02, position, q, 1)
-    hand.key(0.5, position, q, 1)
-
-
-def take_clip(hand, pose):
-    """Back onto a clip in the field: grip it, open, draw out."""
-    position, q, shaft = pose
-    outside = add(position, shaft, OUT_OF_FIELD)
-    open_where_it_lies(hand, pose)
-    hand.key(0.8, add(position, shaft, 6), q, 1)
-    hand.key(1.2, outside, q, 1)
-    hand.key(0.02, outside, q)
 
 
 class Field:
@@ -287,16 +169,6 @@ def listen(script, field):
         hand.key(0.8, outside, q)
 
 
-def suction_poses(field):
-    """The suction tube beside the field, and dipped into it below the dome."""
-    shaft = unit([0.85, -0.35, 0.39])
-    x = across([0, -0.5, 0.87], shaft)
-    q = quaternion(x, cross(shaft, x), shaft)
-    bottom, _ = field.on_line("inferior", 0.25)
-    low = add(bottom, shaft, 5.0)
-    return add(low, shaft, 28), low, q
-
-
 def clips(path, placed, wait):
     """A script of one clip after the other: each is loaded and placed, then `wait` seconds outside the field.
 
@@ -361,46 +233,16 @@ def exercise_3(folder):
             one_clip(cases / f"clipping_{case}_steady.csv", "angled", Field(case).clip_neck)
 
 
-def steady_outside(script):
-    return [1000 * float(v) for v in script.right.rows[-1][1].split(",")[2:5]]
-
-
-def last_q(script):
-    return [float(v) for v in script.right.rows[-1][1].split(",")[5:9]]
-
-
 def exercise_4(folder):
     field = Field(CASE)
-    outside, low, q = suction_poses(field)
-
-    def suction(script, seconds):
-        script.left.key(0, outside, q)
-        script.left.key(1.5, outside, q)
-        script.left.key(2.0, low, q, 1)
-        script.left.key(seconds, low, q, 1)
-        script.left.key(2.0, outside, q, 0)
-
-    script = Script()
-    script.command(1, "ask", "bleeding rupture")
-    script.command(0.1, "ask", "applier load temporary_curved")
-    temporary = field.branch(Clip("temporary_curved"), **PROXIMAL)
-    place_clip(script.right, temporary, approach=2.0, open_at=9)
-    away = add(steady_outside(script), field.view, 30)
-    script.right.key(0.8, away, last_q(script))
-    script.command(round(script.right.t + 0.2, 3), "ask", "applier load angled")
-    script.right.key(0.5, away, last_q(script))
-    field.clip_neck(script.right, TORN)
-    take_clip(script.right, field.branch(Clip("temporary_curved"), **PROXIMAL, grip=PROXIMAL_GRIP))
-    script.right.key(8, steady_outside(script), last_q(script))
-    suction(script, script.right.t - 14)
-    script.write(folder / "4_rupture_steady.csv")
-
-    late = Script()
-    late.command(1, "ask", "bleeding rupture")
-    suction(late, 12)
-    pose = field.neck(Clip("angled"), -0.9, 1.5)
-    late.right.key(0, add(pose[0], pose[2], OUT_OF_FIELD), pose[1])
-    late.right.key(301, add(pose[0], pose[2], OUT_OF_FIELD), pose[1])
+    bottom, _ = field.on_line("inferior", 0.25)
+    tube = rupture.tube_poses(bottom, [0.85, -0.35, 0.39], [0, -0.5, 0.87], 5, 28)
+    put, taken = (field.branch(Clip("temporary_curved"), **PROXIMAL, grip=g) for g in (None, PROXIMAL_GRIP))
+    temporary = rupture.Temporary("temporary_curved", put, taken)
+    neck = field.placement(TORN)
+    steady = rupture.steady(temporary, "angled", lambda hand: place_clip(hand, *neck), field.view, tube)
+    steady.write(folder / "4_rupture_steady.csv")
+    late = rupture.late(field.neck(Clip("angled"), -0.9, 1.5), tube)
     late.write(folder / "4_rupture_late.csv")
 
 

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Motions of exercises in which the dome tears, from where the clips and the suction tube are to lie."""
+from dataclasses import dataclass
+
+from clip_hand import OUT_OF_FIELD, Script, last_q, place_clip, steady_outside, take_clip
+from vectors import across, add, cross, quaternion, unit
+
+TORN_AT = 1  # s
+DIPPED = 10.5  # s before the end of the motion the tube leaves the blood
+
+
+@dataclass
+class Temporary:
+    """A temporary clip: poses of the applier that puts it there, and that takes it where the field has turned it to."""
+
+    clip: str
+    put: tuple
+    taken: tuple
+
+
+def tube_poses(point, shaft, flat, above, back):
+    """The suction tube beside the field, and dipped to `above` mm over a point of it; both with its orientation."""
+    shaft = unit(shaft)
+    x = across(flat, shaft)
+    low = add(point, shaft, above)
+    return add(low, shaft, back), low, quaternion(x, cross(shaft, x), shaft)
+
+
+def suck(script, tube, seconds):
+    """The tube comes, stays in the blood for `seconds`, and leaves."""
+    outside, low, q = tube
+    script.left.key(0, outside, q)
+    script.left.key(1.5, outside, q)
+    script.left.key(2.0, low, q, 1)
+    script.left.key(seconds, low, q, 1)
+    script.left.key(2.0, outside, q, 0)
+
+
+def torn(temporary, neck_clip, place, view):
+    """The dome tears. The temporary clip, then `place` moves the hand that puts the other clip across the neck."""
+    script = Script()
+    script.command(TORN_AT, "ask", "bleeding rupture")
+    script.command(0.1, "ask", "applier load " + temporary.clip)
+    place_clip(script.right, temporary.put, approach=2.0, open_at=9)
+    away = add(steady_outside(script), view, 30)
+    script.right.key(0.8, away, last_q(script))
+    script.command(round(script.right.t + 0.2, 3), "ask", "applier load " + neck_clip)
+    script.right.key(0.5, away, last_q(script))
+    place(script.right)
+    return script
+
+
+def steady(temporary, neck_clip, place, view, tube, wait=8):
+    """Suction, temporary clip, the clip across the neck, temporary clip off, and `wait` seconds outside the field."""
+    script = torn(temporary, neck_clip, place, view)
+    take_clip(script.right, temporary.taken)
+    script.right.key(wait, steady_outside(script), last_q(script))
+    suck(script, tube, script.right.t - DIPPED - 3.5)
+    return script
+
+
+def left_on(temporary, neck_clip, place, view, tube, wait=4):
+    """The same, but the temporary clip stays on the parent artery."""
+    script = torn(temporary, neck_clip, place, view)
+    script.right.key(wait, steady_outside(script), last_q(script))
+    suck(script, tube, script.right.t - DIPPED)
+    return script
+
+
+def late(pose, tube):
+    """Somebody sucks for a while, and nobody clips."""
+    script = Script()
+    script.command(TORN_AT, "ask", "bleeding rupture")
+    suck(script, tube, 12)
+    outside = add(pose[0], pose[2], OUT_OF_FIELD)
+    script.right.key(0, outside, pose[1])
+    script.right.key(301, outside, pose[1])
+    return script
