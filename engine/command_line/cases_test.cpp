@@ -43,7 +43,7 @@ TEST_F(CasesCommand, ACaseIsAddedListedAndRemoved) {
   EXPECT_NE(err_.str().find("is there already"), std::string::npos);
   ASSERT_EQ(run(cmd_cases), 0);
   EXPECT_NE(out_.str().find("tip "), std::string::npos);
-  EXPECT_NE(out_.str().find("1 exercise, added"), std::string::npos);
+  EXPECT_NE(out_.str().find("1 exercise, added: a\n"), std::string::npos) << "an exercise without an id: the file";
   options_.name = "tip";
   ASSERT_EQ(run(cmd_cases_remove), 0);
   EXPECT_EQ(run(cmd_cases_remove), 2);
@@ -60,10 +60,10 @@ TEST_F(CasesCommand, TheFolderOfABuiltCaseIsAdded) {
   ASSERT_EQ(run(cmd_cases_add), 0) << err_.str();
   EXPECT_EQ(run(cmd_cases_add), 2) << "it is there already";
   options_.replace = true;
-  folder_.write("tip/2_b.xml", R"(<scene><exercise title="More" text="Look."/></scene>)");
+  folder_.write("tip/2_b.xml", R"(<scene><exercise id="more" title="More" text="Look."/></scene>)");
   ASSERT_EQ(run(cmd_cases_add), 0) << err_.str();
   ASSERT_EQ(run(cmd_cases), 0);
-  EXPECT_NE(out_.str().find("2 exercises, added"), std::string::npos);
+  EXPECT_NE(out_.str().find("2 exercises, added: 1_a, more\n"), std::string::npos) << out_.str();
   folder_.write("tip/2_b.xml", R"(<scene><exercise title="More" textt="Look."/></scene>)");
   EXPECT_EQ(run(cmd_cases_add), 2);
   ASSERT_EQ(run(cmd_cases), 0);

@@ -8,6 +8,7 @@
 
 #include "core/base/input_error.h"
 #include "core/base/removed_at_end.h"
+#include "core/base/text.h"
 #include "core/sim/simulation.h"
 #include "engine/command_line/cases.h"
 #include "engine/live/project_folder.h"
@@ -94,6 +95,12 @@ std::vector<fs::path> scenes_of(const ListedCase& c) {
   return out;
 }
 
+std::string exercise_ids(const ListedCase& c) {
+  std::vector<std::string> ids;
+  for (const CatalogueEntry& e : c.exercises) ids.push_back(exercise_id(e));
+  return joined(ids);
+}
+
 }  // namespace
 
 int cmd_cases(const CommandContext& context, const CasesOptions& o) {
@@ -105,9 +112,9 @@ int cmd_cases(const CommandContext& context, const CasesOptions& o) {
       return 0;
     }
     for (const ListedCase& c : cases)
-      fmt::print(context.out, "{:<28} {:<26} {}  {} exercise{}{}\n", c.name, c.site().empty() ? "-" : c.site(),
+      fmt::print(context.out, "{:<28} {:<26} {}  {} exercise{}{}: {}\n", c.name, c.site().empty() ? "-" : c.site(),
                  c.difficulty() > 0 ? std::to_string(c.difficulty()) : "-", c.exercises.size(),
-                 c.exercises.size() == 1 ? "" : "s", c.added ? ", added" : "");
+                 c.exercises.size() == 1 ? "" : "s", c.added ? ", added" : "", exercise_ids(c));
     return 0;
   });
 }

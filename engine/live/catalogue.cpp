@@ -23,6 +23,12 @@ int difficulty_of(const std::string& text) {
   return text.size() == 1 && text[0] >= '1' && text[0] <= '5' ? text[0] - '0' : 0;
 }
 
+/// The folder in scenes/cases in which a scene lies, at any depth; empty: none.
+std::string case_folder(const fs::path& scene) {
+  const fs::path inside = scene.lexically_relative("scenes/cases");
+  return inside.has_parent_path() ? inside.begin()->string() : std::string();
+}
+
 }  // namespace
 
 std::optional<CatalogueEntry> catalogue_entry(const fs::path& file) {
@@ -34,8 +40,10 @@ std::optional<CatalogueEntry> catalogue_entry(const fs::path& file) {
   for (const auto& child : document.root->children) {
     if (child->name != "exercise") continue;
     CatalogueEntry out;
+    out.id = value_of(*child, "id");
+    out.name = value_of(*child, "title");
     out.title = value_of(*document.root, "title");
-    if (out.title.empty()) out.title = value_of(*child, "title");
+    if (out.title.empty()) out.title = out.name;
     out.text = value_of(*child, "text");
     out.site = value_of(*child, "site");
     out.difficulty = difficulty_of(value_of(*child, "difficulty"));
@@ -61,6 +69,7 @@ std::vector<CatalogueEntry> catalogue(const fs::path& folder) {
       if (!entry) continue;
       entry->scene = file.lexically_relative(folder).generic_string();
       entry->group = group;
+      if (entry->group == "cases") entry->of_case = case_folder(entry->scene);
       out.push_back(std::move(*entry));
     }
   }
@@ -72,6 +81,9 @@ nlohmann::ordered_json catalogue_json(const std::vector<CatalogueEntry>& entries
   for (const CatalogueEntry& e : entries)
     out.push_back({{"scene", e.scene},
                    {"group", e.group},
+                   {"case", e.of_case},
+                   {"id", e.id},
+                   {"name", e.name},
                    {"title", e.title},
                    {"text", e.text},
                    {"site", e.site},

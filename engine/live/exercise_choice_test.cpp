@@ -112,18 +112,25 @@ TEST_F(ExerciseChoiceTest, TheCatalogueHasScenesWithAnExercise) {
   folder_.write("scenes/training/broken.xml", "<scene><exercise");
   folder_.write("scenes/parts/c.xml", R"(<part><exercise id="e"/></part>)");
   folder_.write("scenes/cases/mine/3_c.xml",
-                R"(<scene title="C"><exercise id="e" site="middle cerebral" difficulty="4"/></scene>)");
+                R"(<scene title="C"><exercise id="e" title="D" site="middle cerebral" difficulty="4"/></scene>)");
+  folder_.write("scenes/cases/alone.xml", R"(<scene title="E"><exercise/></scene>)");
   folder_.write("scenes/cases/bench.xml", R"(<scene title="No exercise"/>)");
   const auto found = catalogue(folder_.path());
-  ASSERT_EQ(found.size(), 3u);
+  ASSERT_EQ(found.size(), 4u);
   EXPECT_EQ(found[0].scene, "scenes/training/1_a.xml");
   EXPECT_EQ(found[0].title, "A");
   EXPECT_EQ(found[0].picture, "");
   EXPECT_EQ(found[1].text, "Do <it>");
   EXPECT_EQ(found[1].picture, (folder_.path() / "scenes/training/2_b.jpg").string());
   EXPECT_EQ(found[2].group, "cases");
-  EXPECT_EQ(found[2].site, "middle cerebral");
-  EXPECT_EQ(found[2].difficulty, 4);
+  EXPECT_EQ(found[2].scene, "scenes/cases/alone.xml");
+  EXPECT_EQ(found[2].of_case, "");
+  EXPECT_EQ(found[3].of_case, "mine");
+  EXPECT_EQ(found[3].id, "e");
+  EXPECT_EQ(found[3].name, "D");
+  EXPECT_EQ(found[3].title, "C");
+  EXPECT_EQ(found[3].site, "middle cerebral");
+  EXPECT_EQ(found[3].difficulty, 4);
   EXPECT_EQ(found[1].difficulty, 0) << "not said";
   EXPECT_TRUE(catalogue(folder_.path() / "nowhere").empty());
 }

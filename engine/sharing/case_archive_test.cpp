@@ -104,6 +104,8 @@ TEST_F(CaseArchive, GivesTheSameFilesAndTheSameBytes) {
   EXPECT_EQ(cases[1].report, c.report);
   const auto exercises = added_exercises(root_ / "data");
   ASSERT_EQ(exercises.size(), 2u);
+  EXPECT_EQ(exercises[0].of_case, exercises[1].of_case);
+  EXPECT_NE(exercises[0].of_case, c.exercises[0].of_case) << "the project has a case of the same name";
   EXPECT_EQ(exercises[0].title, "Bifurcation <left>");
   EXPECT_TRUE(fs::path(exercises[0].scene).is_absolute());
   EXPECT_THROW(unpack_case(root_ / "a.zip", root_ / "data/cases"), InputError);  // it is there already

@@ -34,7 +34,7 @@ std::vector<CatalogueEntry> exercises_of(const fs::path& unpacked) {
     if (!scene.is_string()) continue;
     const fs::path file = fs::absolute(unpacked / scene.get<std::string>()).lexically_normal();
     if (auto entry = catalogue_entry(file)) {
-      entry->scene = file.string(), entry->group = group;
+      entry->scene = file.string(), entry->group = group, entry->of_case = fs::absolute(unpacked).string();
       out.push_back(std::move(*entry));
     }
   }
@@ -82,9 +82,9 @@ std::vector<ListedCase> list_cases(const fs::path& project, const fs::path& data
   std::map<std::string, ListedCase> cases;
   for (CatalogueEntry& e : catalogue(project)) {
     if (e.group != group) continue;
-    const fs::path scene(e.scene), inside = scene.lexically_relative("scenes/cases");
-    const bool alone = !inside.has_parent_path();
-    const std::string name = alone ? inside.stem().string() : inside.begin()->string();
+    const fs::path scene(e.scene);
+    const bool alone = e.of_case.empty();
+    const std::string name = alone ? scene.stem().string() : e.of_case;
     ListedCase& c = cases[name];
     c.name = name, c.folder = fs::absolute(project / scene.parent_path()).lexically_normal();
     if (!alone && c.report.is_null()) c.report = read_report(c.folder);
@@ -104,12 +104,20 @@ std::vector<ListedCase> list_cases(const fs::path& project, const fs::path& data
   return out;
 }
 
+std::string exercise_id(const CatalogueEntry& e) { return e.id.empty() ? fs::path(e.scene).stem().string() : e.id; }
+
 nlohmann::ordered_json cases_json(const std::vector<ListedCase>& cases) {
   auto out = nlohmann::ordered_json::array();
   for (const ListedCase& c : cases) {
     auto exercises = nlohmann::ordered_json::array();
     for (const CatalogueEntry& e : c.exercises)
-      exercises.push_back({{"scene", e.scene}, {"title", e.title}, {"text", e.text}, {"picture", e.picture}});
+      exercises.push_back({{"id", exercise_id(e)},
+                           {"name", e.name},
+                           {"scene", e.scene},
+                           {"title", e.title},
+                           {"difficulty", e.difficulty},
+                           {"text", e.text},
+                           {"picture", e.picture}});
     out.push_back({{"name", c.name},
                    {"added", c.added},
                    {"site", c.site()},

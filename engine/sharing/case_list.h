@@ -34,7 +34,11 @@ ListedCase built_case(const std::filesystem::path& folder);
 /// Exercises of the added cases, for the start page. Scenes are absolute paths.
 std::vector<CatalogueEntry> added_exercises(const std::filesystem::path& data);
 
-/// [{name, added, site, difficulty, title, folder, exercises: [{scene, title, text, picture}], report}]
+/// Of the exercise, or the name of the scene's file if it has none.
+std::string exercise_id(const CatalogueEntry& exercise);
+
+/// [{name, added, site, difficulty, title, folder, report,
+///   exercises: [{id, name, scene, title, difficulty, text, picture}]}]
 nlohmann::ordered_json cases_json(const std::vector<ListedCase>& cases);
 
 }  // namespace insula

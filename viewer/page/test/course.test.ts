@@ -61,13 +61,23 @@ describe('cases', () => {
     { scene: 'e', site: 'middle cerebral' },
   ]);
   it('are grouped by site, the easiest first, what is not said last', () => {
-    const groups = bySite(cases).map((g) => [g.site, g.cases.map((c) => c.scene).join('')]);
+    const groups = bySite(cases).map((g) => [g.site, g.cases.map((c) => c.map((e) => e.scene).join('+')).join('')]);
     expect(groups).toEqual([
       ['basilar tip', 'd'],
       ['middle cerebral', 'cae'],
       ['', 'b'],
     ]);
     expect(cases[3]!.difficulty).toBe(5);
+  });
+  it('keep their exercises together', () => {
+    const exercises = exercisesOf([
+      { scene: 'a', difficulty: 4, case: 'one' },
+      { scene: 'b', difficulty: 3 },
+      { scene: 'c', difficulty: 2, case: 'one' },
+      { scene: 'd', difficulty: 3 },
+    ]);
+    const scenes = bySite(exercises)[0]!.cases.map((c) => c.map((e) => e.scene));
+    expect(scenes).toEqual([['a', 'c'], ['b'], ['d']]);
   });
   it('are chosen by site and difficulty', () => {
     const names = (site: string | null, most: number) => chosen(cases, site, most).map((c) => c.scene);

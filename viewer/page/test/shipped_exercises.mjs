@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The shipped exercises as a gateway lists them, with the texts and pictures that lie in scenes/.
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 const root = fileURLToPath(new URL('../../..', import.meta.url));
@@ -16,9 +16,9 @@ function exerciseOf(group, name) {
   if (!tag) return [];
   const value = (what) => plain(new RegExp(`\\s${what}="([^"]*)"`).exec(tag)?.[1] ?? '');
   const [title, text, site] = ['title', 'text', 'site'].map(value);
-  return [
-    { scene, group, title, text, site, difficulty: Number(value('difficulty')), picture: existsSync(pictureOf(scene)) },
-  ];
+  const rank = { difficulty: Number(value('difficulty')), picture: existsSync(pictureOf(scene)) };
+  const ofCase = group === 'cases' && name.includes('/') ? dirname(name) : '';
+  return [{ scene, group, case: ofCase, name: title, title, text, site, ...rank }];
 }
 
 export const shippedExercises = () =>

@@ -13,7 +13,7 @@ describe('answers of the gateway', () => {
   it('are checked before use', () => {
     expect(exercisesOf('nonsense')).toEqual([]);
     expect(exercisesOf([{ scene: 'a', picture: 'yes' }, null, 7, { title: 'no scene' }])).toEqual([
-      { scene: 'a', group: '', title: '', text: '', site: '', difficulty: 0, picture: false },
+      { scene: 'a', group: '', ofCase: '', name: '', title: '', text: '', site: '', difficulty: 0, picture: false },
     ]);
     expect(peopleOf([{ pseudonym: 'P', year: 'x' }, {}])).toEqual([
       { pseudonym: 'P', role: '', handedness: '', year: 0 },

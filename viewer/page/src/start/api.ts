@@ -6,6 +6,10 @@ import { text as message } from '../languages/text';
 export interface Exercise {
   scene: string;
   group: string;
+  /** The same for all exercises of one case; '': it stands alone. */
+  ofCase: string;
+  /** Of the exercise alone, without its scene: "Rupture". */
+  name: string;
   title: string;
   text: string;
   /** Of the aneurysm; '': not said. */
@@ -126,6 +130,8 @@ export function exercisesOf(json: unknown): Exercise[] {
     .map((e) => ({
       scene: text(e.scene),
       group: text(e.group),
+      ofCase: text(e.case),
+      name: said(text(e.name)),
       title: said(text(e.title)),
       text: said(text(e.text)),
       site: text(e.site),

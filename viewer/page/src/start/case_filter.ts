@@ -41,17 +41,28 @@ export const difficultyText = (difficulty: number): string =>
 
 export interface SiteGroup {
   site: string;
-  cases: Exercise[];
+  cases: Exercise[][];
+}
+
+/** The exercises of each case, in the order of the list. */
+export function byCase(exercises: readonly Exercise[]): Exercise[][] {
+  const out: Exercise[][] = [];
+  for (const e of exercises) {
+    const same = e.ofCase === '' ? undefined : out.find((c) => c[0]?.ofCase === e.ofCase);
+    if (same) same.push(e);
+    else out.push([e]);
+  }
+  return out;
 }
 
 /** By site in order of its name, those without one last; in a site the easiest first. */
 export function bySite(cases: readonly Exercise[]): SiteGroup[] {
   const sites = [...new Set(cases.map((c) => c.site))];
   sites.sort((a, b) => Number(a === '') - Number(b === '') || siteText(a).localeCompare(siteText(b)));
-  const last = (c: Exercise) => (c.difficulty === 0 ? 6 : c.difficulty);
+  const last = (c: readonly Exercise[]) => Math.min(...c.map((e) => (e.difficulty === 0 ? 6 : e.difficulty)));
   return sites.map((site) => ({
     site,
-    cases: cases.filter((c) => c.site === site).sort((a, b) => last(a) - last(b)),
+    cases: byCase(cases.filter((c) => c.site === site)).sort((a, b) => last(a) - last(b)),
   }));
 }
 
