@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes cases of the library from scenes/cases/library.json: make.py [--again] NAME ...
+"""Makes cases of the library from scenes/cases/library.json: make.py [--again | --exercises] NAME ...
 
-Each becomes the folder scenes/cases/NAME: artery and lobes, artery.xml, field.xml, case.xml, a steady motion and one
-that fails. insula_artery makes the artery from its dimensions. insula_case places it and finds the clip's place by
-playing, unless the table states it.
---again writes texts and motions from what a former run has built. docs/case-library.md describes the table.
+Each becomes the folder scenes/cases/NAME: artery and lobes, artery.xml, field.xml, and of each exercise the scene, a
+steady motion and one that fails. insula_artery makes the artery from its dimensions. insula_case places it and finds
+the clip's place by playing, unless the table states it.
+--again writes texts and motions from what a former run has built. --exercises writes texts, and the motions of further
+exercises, from the folder alone. docs/case-library.md describes the table.
 """
 import argparse
 import json
@@ -19,6 +20,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import placed  # noqa: E402
 import texts  # noqa: E402
+import torn  # noqa: E402
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "motions"))
 import vectors  # noqa: E402
@@ -210,6 +212,14 @@ def write_motions(case, approach, folder, work):
         (folder / ("case_%s.csv" % motion["motion"])).write_text(text, encoding="utf-8")
 
 
+def write_exercises(case, approach, folder):
+    """Motions of the exercises beside clipping."""
+    for more in case.get("exercises", []):
+        for motion in ("steady", more["fails"]["motion"]):
+            text = torn.text(motion, more, folder, approach)
+            (folder / ("%s_%s.csv" % (more["id"], motion))).write_text(text, encoding="utf-8")
+
+
 def approach_of(name):
     for path in sorted((ROOT / "meshes").glob("*/approach.json")):
         approach = read(path)
@@ -220,18 +230,22 @@ def approach_of(name):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--again", action="store_true", help="write texts and motions only")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--again", action="store_true", help="write texts and motions only")
+    which.add_argument("--exercises", action="store_true", help="write texts and motions of further exercises only")
     parser.add_argument("names", nargs="+", metavar="NAME")
     args = parser.parse_args()
     table = {case["name"]: case for case in read(CASES / "library.json")["cases"]}
     for name in args.names:
         case, folder, work = table[name], CASES / name, ROOT / "build" / "case_library" / name
         approach = approach_of(case["approach"])
-        if not args.again:
+        if not args.again and not args.exercises:
             build(case, work)
-        write_motions(case, approach, folder, work)
-        texts.write(case, approach, folder, work)
-        print(name, json.dumps(read(work / "scenes.json").get("clipping")))
+        if not args.exercises:
+            write_motions(case, approach, folder, work)
+            print(name, json.dumps(read(work / "scenes.json").get("clipping")))
+        write_exercises(case, approach, folder)
+        texts.write(case, approach, folder)
 
 
 if __name__ == "__main__":

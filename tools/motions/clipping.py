@@ -236,7 +236,7 @@ def exercise_3(folder):
 def exercise_4(folder):
     field = Field(CASE)
     bottom, _ = field.on_line("inferior", 0.25)
-    tube = rupture.tube_poses(bottom, [0.85, -0.35, 0.39], [0, -0.5, 0.87], 5, 28)
+    tube = rupture.tube_over(bottom, [0.85, -0.35, 0.39], [0, -0.5, 0.87], 5, 28)
     put, taken = (field.branch(Clip("temporary_curved"), **PROXIMAL, grip=g) for g in (None, PROXIMAL_GRIP))
     temporary = rupture.Temporary("temporary_curved", put, taken)
     neck = field.placement(TORN)

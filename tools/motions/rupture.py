@@ -18,22 +18,32 @@ class Temporary:
     taken: tuple
 
 
-def tube_poses(point, shaft, flat, above, back):
-    """The suction tube beside the field, and dipped to `above` mm over a point of it; both with its orientation."""
+@dataclass
+class Tube:
+    """The suction tube: where its tip begins, waits beside the field, and lies in the blood; its orientation."""
+
+    begin: list
+    outside: list
+    low: list
+    turned: list
+
+
+def tube_over(point, shaft, flat, above, back, home=None):
+    """A tube that dips to `above` mm over a point of the field. It comes along its shaft, or straight from `home`."""
     shaft = unit(shaft)
     x = across(flat, shaft)
     low = add(point, shaft, above)
-    return add(low, shaft, back), low, quaternion(x, cross(shaft, x), shaft)
+    outside = add(low, unit(add(home, low, -1)) if home else shaft, back)
+    return Tube(home or outside, outside, low, quaternion(x, cross(shaft, x), shaft))
 
 
 def suck(script, tube, seconds):
     """The tube comes, stays in the blood for `seconds`, and leaves."""
-    outside, low, q = tube
-    script.left.key(0, outside, q)
-    script.left.key(1.5, outside, q)
-    script.left.key(2.0, low, q, 1)
-    script.left.key(seconds, low, q, 1)
-    script.left.key(2.0, outside, q, 0)
+    script.left.key(0, tube.begin, tube.turned)
+    script.left.key(1.5, tube.outside, tube.turned)
+    script.left.key(2.0, tube.low, tube.turned, 1)
+    script.left.key(seconds, tube.low, tube.turned, 1)
+    script.left.key(2.0, tube.outside, tube.turned, 0)
 
 
 def torn(temporary, neck_clip, place, view):
