@@ -19,6 +19,7 @@
 #include "tools/case_builder/place.h"
 #include "tools/case_builder/pose_view.h"
 #include "tools/case_builder/project.h"
+#include "tools/case_builder/real_time.h"
 #include "tools/case_builder/region_walls.h"
 #include "tools/case_builder/report.h"
 #include "tools/case_builder/retractors.h"
@@ -166,7 +167,10 @@ void wall_options(CLI::App* app, Options& o) {
                     .min = "0 mm",
                     .max = "200 mm",
                     .doc = "length of vessel kept along each centreline from the neck; 0 mm: all"});
-  app->add_option("--vertices", o.vertices, "of the wall, about")->check(CLI::Range(400, 6000));
+  app->add_option_function<int>(
+         "--vertices", [&o](int vertices) { o.vertices = vertices, o.keep_vertices = true, o.coarser.reset(); },
+         "of the wall, about (default: 1650, or fewer where real time asks for it)")
+      ->check(CLI::Range(400, 6000));
   quantity<Length>(
       app, "--bleb", [&o](double mm) { o.bleb = mm; },
       {.bare = "mm", .min = "0 mm", .max = "4 mm", .doc = "radius of the weak spot at the dome; 0 mm: none"});
@@ -349,13 +353,16 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
   return 0;
 }
 
-void do_stage(const std::string& stage, const CaseFolder& folder, const Line& line, const fs::path& project,
-              const Options& o, Progress& progress) {
+void do_stage(const std::string& stage, const CaseFolder& folder, const Line& line, const fs::path& project, Options& o,
+              Progress& progress) {
   if (stage == "intake") run_intake(folder, line.input, o, progress);
   if (stage == "wall") run_wall(folder, o, progress);
   if (stage == "brain") run_brain(folder, project, o, progress);
   if (stage == "place") run_place(folder, project, o, progress);
-  if (stage == "scenes") run_scenes(folder, project, o, progress);
+  if (stage == "scenes") {
+    if (keep_real_time(folder, project, o, usual_pace(), progress)) write_options(folder, o);
+    run_scenes(folder, project, o, progress);
+  }
   if (stage == "report") run_report(folder, project, o, progress);
 }
 
@@ -411,7 +418,11 @@ int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::
                          folder.path.string());
     } else {
       folder.path = line.folder;
+      const Options before = read_options(folder);
       o = options_of(folder, arguments, out, err);
+      // Another vessel may not ask for a coarser wall.
+      const bool changed = to_json(o) != to_json(before);
+      if (line.stage == "intake" || (line.stage == "wall" && changed)) o.coarser.reset();
     }
     const fs::path project = find_project(folder.path);
     folder.opening = read_approach(project, o.approach).opening.file;

@@ -96,6 +96,8 @@ Json to_json(const Options& o) {
   put(j, "inlet", o.inlet);
   j["keep"] = o.keep;
   j["vertices"] = o.vertices;
+  if (o.keep_vertices) j["keep_vertices"] = true;
+  put(j, "coarser_vertices", o.coarser);
   j["bleb"] = o.bleb;
   if (!o.walls.empty()) j["walls"] = o.walls;
   if (!o.wall_patches.empty()) j["wall_patches"] = wall_patches_json(o.wall_patches);
@@ -146,6 +148,9 @@ Options options_from_json(const Json& j) {
     take(j, "inlet", o.inlet);
     take(j, "keep", o.keep);
     take(j, "vertices", o.vertices);
+    o.keep_vertices = o.vertices != Options().vertices;  // of older cases, which do not say it
+    take(j, "keep_vertices", o.keep_vertices);
+    take(j, "coarser_vertices", o.coarser);
     take(j, "bleb", o.bleb);
     take(j, "walls", o.walls);
     if (j.contains("wall_patches")) o.wall_patches = wall_patches_from_json(j["wall_patches"]);

@@ -62,6 +62,8 @@ struct Options {
   std::optional<Point> inlet;                        ///< the opening nearest to it; by default the widest
   double keep = 13;                ///< vessels are cut off so far along their centrelines from the neck; 0: nowhere
   int vertices = 1650;             ///< of the wall, about
+  bool keep_vertices = false;      ///< they are the author's own
+  std::optional<int> coarser;      ///< fewer vertices, which real time asked for (real_time.h)
   double bleb = 1;                 ///< radius of the weak spot at the dome; 0: none
   std::vector<std::string> walls;  ///< changes of a region's thickness and modulus (region_walls.h)
   std::vector<WallPatch> wall_patches;  ///< parts of the wall, the later ones over the earlier (wall_patches.h)
@@ -90,6 +92,8 @@ struct Options {
   int plays = 16;                           ///< placements of the clip that are played, at most
   std::vector<std::string> rules;           ///< changes of goals, faults and complications (rules.h)
   bool rehearse = true;                     ///< the exercises are played, to find scripted hands that succeed
+
+  int wall_vertices() const { return keep_vertices ? vertices : coarser.value_or(vertices); }
 };
 
 Json to_json(const Options& options);

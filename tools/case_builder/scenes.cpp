@@ -65,6 +65,28 @@ void write_clipping(const SceneFacts& f, const CaseFolder& folder) {
   write_text(exercise_file(folder, 3), exercise(f, 3));
 }
 
+/// What the scenes are made of, before anything is played.
+struct Draft {
+  Draft(const CaseFolder& folder, const fs::path& project, const Options& o)
+      : vessel(read_wall(folder.artery())),
+        clips(read_clips(project)),
+        approach(read_approach(project, o.approach)),
+        floor(read_ply(folder.lobes() / (approach.floor + "_surface.ply"))) {
+    if (!vessel.neck) throw InputError("the vessel has no neck; do the stage wall again");
+    ranked = clip_plans(vessel, floor, clips, o, approach);
+    facts = facts_of(folder, vessel, o, approach);
+    facts.clips = on_tray({ranked.front().clip.name});
+    facts.assets = link_assets(folder, project, facts.clips, approach);
+  }
+
+  artery::Vessel vessel;
+  std::vector<ClipShape> clips;
+  Approach approach;
+  Solid floor;
+  std::vector<ClipPlan> ranked;  ///< the best first
+  SceneFacts facts;              ///< with the clip of the best one
+};
+
 /// The best of the ranked plans in the running scene. A plan that an author has fixed is played, and left as it is.
 RehearsedClip rehearsed_clip(SceneFacts f, const CaseFolder& folder, const fs::path& project, const artery::Vessel& v,
                              const std::vector<ClipPlan>& ranked, const Options& o, int plays, Progress& progress) {
@@ -121,25 +143,27 @@ std::vector<fs::path> exercise_files(const CaseFolder& folder) {
   return out;
 }
 
+fs::path write_draft(const CaseFolder& folder, const fs::path& project, const Options& o) {
+  const Draft draft(folder, project, o);
+  write_clipping(draft.facts, folder);
+  write_text(folder.path / "3_clipping_steady.csv", clipping_motion(draft.ranked.front()));
+  return exercise_file(folder, 3);
+}
+
 void run_scenes(const CaseFolder& folder, const fs::path& project, const Options& o, Progress& progress) {
   progress.stage("scenes", (o.brain.empty() ? 5 : 6) + (o.rehearse ? 2 : 1));
   progress.step("choosing a clip");
-  const artery::Vessel v = read_wall(folder.artery());
-  if (!v.neck) throw InputError("the vessel has no neck; do the stage wall again");
+  Draft draft(folder, project, o);
+  const artery::Vessel& v = draft.vessel;
+  const Solid& floor = draft.floor;
+  const std::vector<ClipPlan>& ranked = draft.ranked;
+  SceneFacts& f = draft.facts;
   std::vector<Note> notes;
-  const std::vector<ClipShape> clips = read_clips(project);
-  const Approach approach = read_approach(project, o.approach);
-  const Solid floor(read_ply(folder.lobes() / (approach.floor + "_surface.ply")));
-  const std::vector<ClipPlan> ranked = clip_plans(v, floor, clips, o, approach);
-
-  SceneFacts f = facts_of(folder, v, o, approach);
-  f.clips = on_tray({ranked.front().clip.name});
-  f.assets = link_assets(folder, project, f.clips, f.approach);
   write_rules(f, folder);
   RehearsedClip clipped{ranked.front(), {}, 0};
   if (o.rehearse)
     clipped = sound_clip(f, folder, project, v, ranked, o, progress,
-                         [&] { return clip_plans(v, floor, clips, o, approach, Care::more); });
+                         [&] { return clip_plans(v, floor, draft.clips, o, draft.approach, Care::more); });
   const ClipPlan& plan = clipped.plan;
   const std::vector<Note> wrong = o.rehearse ? notes_of(clipped) : notes_of(plan);
   notes.insert(notes.end(), wrong.begin(), wrong.end());
@@ -149,13 +173,13 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   f.assets = link_assets(folder, project, f.clips, f.approach);
   write_clipping(f, folder);
   if (f.opened)
-    write_text(folder.path / (approach.opening.file + "_steady.csv"),
-               read_file_bytes(project / approach.opening.motion));
+    write_text(folder.path / (f.approach.opening.file + "_steady.csv"),
+               read_file_bytes(project / f.approach.opening.motion));
   write_text(folder.path / "3_clipping_steady.csv", clipping_motion(plan));
   const auto temporary =
-      std::find_if(clips.begin(), clips.end(), [&](const ClipShape& c) { return c.name == f.temporary; });
-  if (temporary == clips.end()) throw InputError("the library has no clip " + f.temporary);
-  const ApplierPose held = plan_temporary(v, floor, *temporary, approach);
+      std::find_if(draft.clips.begin(), draft.clips.end(), [&](const ClipShape& c) { return c.name == f.temporary; });
+  if (temporary == draft.clips.end()) throw InputError("the library has no clip " + f.temporary);
+  const ApplierPose held = plan_temporary(v, floor, *temporary, draft.approach);
 
   spin_strands(f, folder, o.rehearse, notes, progress);
   write_rules(f, folder);  // with the strands that there are
@@ -172,7 +196,7 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
                   {"turn_deg", rounded(plan.at.turn)}};
   if (o.rehearse) json["clipping"] = to_json(clipped.outcome);
   json["clips"] = Json::array();
-  for (const ClipShape& c : clips)
+  for (const ClipShape& c : draft.clips)
     if (c.kind != "temporary" && c.kind != "mini_temporary")
       json["clips"].push_back({{"name", c.name}, {"blade_mm", rounded(c.blade)}});
   json["files_copied"] = f.assets.copied;

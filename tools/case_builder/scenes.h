@@ -21,6 +21,10 @@ fs::path exercise_file(const CaseFolder& folder, int number);
 /// The files of all exercises that a case has, in order. Some approaches have no exercise 1.
 std::vector<fs::path> exercise_files(const CaseFolder& folder);
 
+/// Writes exercise 3 with the clip that seems to fit best, laid as its geometry says, and returns its file. Nothing has
+/// been played. Throws InputError.
+fs::path write_draft(const CaseFolder& folder, const fs::path& project, const Options& options);
+
 /// The stage: reads artery/, lobes/ and wall/notes.json, writes *.xml and *.csv. Throws InputError.
 void run_scenes(const CaseFolder& folder, const fs::path& project, const Options& options, Progress& progress);
 

@@ -161,7 +161,7 @@ Note neck_note(const Vessel& v) {
 Vessel wall_of(const artery::Surface& surface, const Options& o, std::vector<Note>& notes, Progress& progress) {
   artery::Surface s = with_inlet_first(surface, o);
   artery::ImportOptions options;
-  options.vertices = o.vertices;
+  options.vertices = o.wall_vertices();
   options.neck = wanted_neck(o);
   progress.step("centrelines and proposed neck");
   Vessel v = made_of_wide_ones(s, options, notes);
@@ -270,11 +270,21 @@ Json neck_json(const Vessel& v, bool mirrored) {
 
 Vessel with_proposals(const artery::Surface& surface, const Options& o) {
   artery::ImportOptions options;
-  options.vertices = o.vertices;
+  options.vertices = o.wall_vertices();
   artery::Surface s = with_inlet_first(surface, o);
   std::vector<Note> ignored;
   return made_of_wide_ones(s, options, ignored);
 }
+
+namespace {
+Note coarser_note(const Options& o) {
+  return {Note::Kind::repair,
+          fmt::format("The wall was made coarser, of about {} vertices in place of {}, so that a step is quick enough "
+                      "while a clip closes.",
+                      o.wall_vertices(), o.vertices),
+          "To have it finer on a faster machine: insula case wall FOLDER --vertices 2000 --on"};
+}
+}  // namespace
 
 void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
   progress.stage("wall", 5);
@@ -282,6 +292,7 @@ void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
   std::vector<Note> notes;
   const Options read = as_read(o);
   const Vessel v = make_wall(in.surface, read, notes, progress);
+  if (o.coarser && !o.keep_vertices) notes.push_back(coarser_note(o));
   progress.step("writing");
   artery::write_vessel(v, folder.wall());
   Json json;

@@ -49,6 +49,10 @@ MoreRows rows_of_hands(const Simulation& s, const std::vector<RowEstimate>& esti
 
 }  // namespace
 
+double usual_compliance_flops(double rows, const SolverCost& solver, int nodes) {
+  return 0.7 * (rows * double(solver.factor_entries) + 0.3 * rows * rows * 3 * nodes);
+}
+
 SceneWork count_work(const Simulation& s) {
   SceneWork w;
   w.h = s.h();
@@ -78,10 +82,8 @@ SceneWork count_work(const Simulation& s) {
     double rows = now;
     for (const auto& [which, n] : more.of_body) rows += which == body ? n : 0;
     k.rows = int(std::lround(rows));
-    // The flops of the last rows. For expected rows, it is the usual part of the factor that a row reaches.
-    const auto usual = [&](double m) {
-      return 0.7 * (m * double(k.solver.factor_entries) + 0.3 * m * m * 3 * k.nodes);
-    };
+    // The flops of the last rows, and the usual ones of those that are expected.
+    const auto usual = [&](double m) { return usual_compliance_flops(m, k.solver, k.nodes); };
     k.compliance_flops =
         k.solver.compliance_flops > 0 ? k.solver.compliance_flops + usual(rows) - usual(now) : usual(rows);
     w.bodies.push_back(std::move(k));

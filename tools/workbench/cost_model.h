@@ -42,6 +42,9 @@ struct SceneWork {
   bool newton = false;  ///< allowed where sweeps stall
 };
 
+/// Of the compliance of so many rows, each of which reaches the usual part of the factor.
+double usual_compliance_flops(double rows, const SolverCost& solver, int nodes);
+
 /// After the simulation has made a step: rows and the compliance's flops are those of the last one.
 SceneWork count_work(const Simulation& simulation);
 
