@@ -11,6 +11,7 @@ ABOVE, BACK = 6, 26  # mm: the tip of the tube over its point, and its way out
 CHANCE = "../../parts/rupture_by_chance.xml"
 RULES = "../../parts/rupture_rules.xml"
 
+
 def neck_clip(folder):
     """Name of the clip of case_steady.csv, and the pose of the applier where it lets it go."""
     rows = [row.split(",") for row in (folder / "case_steady.csv").read_text(encoding="utf-8").splitlines()]
@@ -52,9 +53,7 @@ def text(motion, exercise, folder, approach):
     clip, pose = neck_clip(folder)
     pose = moved(pose, exercise.get("neck", {}), field)
     tube = tube_of(exercise, field, approach["suction"], folder)
-    play = {
-        "steady": lambda: rupture.steady(temporary, clip, lambda hand: place_clip(hand, pose), field.view, tube),
-        "left_on": lambda: rupture.left_on(temporary, clip, lambda hand: place_clip(hand, pose), field.view, tube),
-        "late": lambda: rupture.late(pose, tube),
-    }
-    return play[motion]().text()
+    if motion == "late":
+        return rupture.late(pose, tube).text()
+    play = {"steady": rupture.steady, "left_on": rupture.left_on}[motion]
+    return play(temporary, clip, lambda hand: place_clip(hand, pose), field.view, tube).text()
