@@ -9,6 +9,10 @@ const shot = shots('studio');
 const difficulty = (page) => page.getByLabel('Difficulty');
 const choices = async (page) => (await project(page, 'narrow_neck')).choices;
 
+/** A page asks for changes of other windows from time to time. */
+const showsChoice = (page, value) =>
+  page.waitForFunction((v) => [...document.querySelectorAll('select')].some((s) => s.value === v), value, patience);
+
 /** Until it asks for its next deed, the page hears nothing new. */
 async function deafUntilItsNextDeed(page) {
   const before = await project(page, 'narrow_neck');
@@ -30,7 +34,7 @@ export async function twoWindows(page, address) {
   await difficulty(other).waitFor(patience);
   await difficulty(page).selectOption('2');
   const began = performance.now();
-  await other.waitForFunction(() => [...document.querySelectorAll('select')].some((s) => s.value === '2'));
+  await showsChoice(other, '2');
   const seconds = (performance.now() - began) / 1000;
 
   await deafUntilItsNextDeed(other);
@@ -46,6 +50,8 @@ export async function twoWindows(page, address) {
   assert.deepEqual(await choices(page), { ...before, difficulty: 4, vertices: 1200 });
   await other.getByText('The case was changed in another window.').waitFor({ state: 'hidden', ...patience });
   await other.close();
+  // An undo of what a page has not shown yet is refused.
+  await showsChoice(page, '1200');
   for (let k = 0; k < 3; k++) await page.getByRole('button', { name: 'Undo' }).click();
   await waitFor('the choices before', async () => (await choices(page)).difficulty === before.difficulty);
   assert.deepEqual(await choices(page), before, 'undo is of the case, whichever window has changed it');
