@@ -45,8 +45,16 @@ function replacedLater(row: Element, successor: HTMLElement): void {
   row.addEventListener('focusout', left);
 }
 
+/** Marks in a field what is marked in the one that it replaces. */
+function keepMarked(before: Element, after: HTMLElement): void {
+  if (!(before instanceof HTMLInputElement) || !(after instanceof HTMLInputElement) || before.type !== 'text') return;
+  if (before.value === after.value) after.setSelectionRange(before.selectionStart, before.selectionEnd);
+  else after.select();
+}
+
 /**
- * Puts new rows in place of the old ones. The field that had the focus keeps it, by its id. A row in which a text is
+ * Puts new rows in place of the old ones. The field that had the focus keeps it, by its id, and what is
+ * marked in it. A row in which a text is
  * being typed stays until that is done: an answer to the change before must not take the text away.
  */
 export function replaceRows(rows: HTMLElement, all: HTMLElement[]): void {
@@ -58,7 +66,10 @@ export function replaceRows(rows: HTMLElement, all: HTMLElement[]): void {
     typing.after(...all.slice(at + 1));
     return replacedLater(typing, all[at]!);
   }
-  const focused = document.activeElement?.id ?? '';
+  const focused = document.activeElement;
   rows.replaceChildren(...all);
-  if (focused !== '' && rows.querySelector(`[id="${focused}"]`)) document.getElementById(focused)!.focus();
+  const heir = focused?.id ? rows.querySelector<HTMLElement>(`[id="${focused.id}"]`) : null;
+  if (!focused || !heir) return;
+  heir.focus();
+  keepMarked(focused, heir);
 }
