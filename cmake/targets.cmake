@@ -112,12 +112,23 @@ function(insula_program target dir)
   endif()
 endfunction()
 
+# What of Asio and Beast is no template is compiled once, and not in each file that includes them. In programs without
+# TLS nothing refers to the second file.
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/network.cpp CONTENT
+  "#include <boost/asio/impl/src.hpp>\n#include <boost/beast/src.hpp>\n")
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/network_tls.cpp CONTENT "#include <boost/asio/ssl/impl/src.hpp>\n")
+add_library(insula_network STATIC ${CMAKE_BINARY_DIR}/generated/network.cpp
+  ${CMAKE_BINARY_DIR}/generated/network_tls.cpp)
+set_target_properties(insula_network PROPERTIES UNITY_BUILD OFF)
+target_compile_definitions(insula_network PUBLIC BOOST_ASIO_SEPARATE_COMPILATION BOOST_BEAST_SEPARATE_COMPILATION)
+target_link_libraries(insula_network PUBLIC Boost::boost Threads::Threads)
+
 insula_glob(servo_src haptic_server/*.cpp)
 list(FILTER servo_src EXCLUDE REGEX "/haptic_server/main\\.cpp$")
 if(servo_src)
   add_library(insula_servo STATIC ${servo_src})
   # Boost for the Haply service's WebSocket; makers' libraries are opened at run time.
-  target_link_libraries(insula_servo PUBLIC insula_haptics PRIVATE Boost::boost ${CMAKE_DL_LIBS})
+  target_link_libraries(insula_servo PUBLIC insula_haptics PRIVATE insula_network ${CMAKE_DL_LIBS})
 endif()
 add_subdirectory(training)
 include(cmake/embed.cmake)
@@ -169,7 +180,7 @@ insula_glob(gateway_src viewer/gateway/*.cpp)
 list(FILTER gateway_src EXCLUDE REGEX "/gateway/main\\.cpp$")
 if(gateway_src)
   add_library(insula_gateway STATIC ${gateway_src})
-  target_link_libraries(insula_gateway PUBLIC insula_bus insula_progress Boost::boost spdlog::spdlog
+  target_link_libraries(insula_gateway PUBLIC insula_bus insula_progress insula_network spdlog::spdlog
                         OpenSSL::SSL OpenSSL::Crypto PkgConfig::AVAHI PRIVATE ZLIB::ZLIB)
   target_compile_definitions(insula_gateway PRIVATE INSULA_PAGE_DIR="${PROJECT_SOURCE_DIR}/viewer/page/dist")
   add_executable(gateway viewer/gateway/main.cpp)

@@ -15,6 +15,8 @@ function(insula_test target)  # insula_test(name SOURCES ... LIBS ... [SERIAL] [
     set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests UNITY_BUILD OFF)
     if(insula_testing IN_LIST T_LIBS)
       target_precompile_headers(${target} REUSE_FROM insula_test_headers)
+    elseif(insula_gateway IN_LIST T_LIBS)
+      target_precompile_headers(${target} REUSE_FROM insula_network_test_headers)
     endif()
     set(cost)
     if(T_COST)
@@ -46,13 +48,21 @@ foreach(l insula_haptics insula_bus insula_servo insula_engine insula_workbench_
 endforeach()
 # Most of a test file's compilation is the reading of these headers. They are compiled once, with the options of tests.
 file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/test_headers.cpp CONTENT "int main() { return 0; }\n")
-add_executable(insula_test_headers ${CMAKE_BINARY_DIR}/generated/test_headers.cpp)
-target_link_libraries(insula_test_headers PRIVATE ${test_libs} GTest::gtest_main)
-target_compile_options(insula_test_headers PRIVATE $<$<CONFIG:Release>:-O1>)
-# ccache has given an outdated one.
-set_target_properties(insula_test_headers PROPERTIES CXX_COMPILER_LAUNCHER "")
-target_precompile_headers(insula_test_headers PRIVATE <gtest/gtest.h> <cmath> <filesystem> <fstream> <sstream> <random>
-  <nlohmann/json.hpp> ${PROJECT_SOURCE_DIR}/core/sim/simulation.h ${PROJECT_SOURCE_DIR}/core/testing/example.h)
+function(insula_test_header target)  # insula_test_header(name LIBS ... HEADERS ...)
+  cmake_parse_arguments(H "" "" "LIBS;HEADERS" ${ARGN})
+  add_executable(${target} ${CMAKE_BINARY_DIR}/generated/test_headers.cpp)
+  target_link_libraries(${target} PRIVATE ${H_LIBS} GTest::gtest_main)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  # ccache has given an outdated one.
+  set_target_properties(${target} PROPERTIES CXX_COMPILER_LAUNCHER "")
+  target_precompile_headers(${target} PRIVATE <gtest/gtest.h> <cmath> <filesystem> <fstream> <sstream>
+    <nlohmann/json.hpp> ${H_HEADERS})
+endfunction()
+insula_test_header(insula_test_headers LIBS ${test_libs} HEADERS <random>
+  ${PROJECT_SOURCE_DIR}/core/sim/simulation.h ${PROJECT_SOURCE_DIR}/core/testing/example.h)
+insula_test_header(insula_network_test_headers LIBS insula_gateway HEADERS <boost/asio/connect.hpp>
+  <boost/asio/ip/tcp.hpp> <boost/asio/ssl/stream.hpp> <boost/beast/core.hpp> <boost/beast/http.hpp>
+  <boost/beast/websocket.hpp>)
 file(GLOB_RECURSE core_tests CONFIGURE_DEPENDS core/*_test.cpp platform/${INSULA_PLATFORM}/*_test.cpp)
 if(NOT OPENCL_INCLUDE)
   list(FILTER core_tests EXCLUDE REGEX "/linalg/opencl/")
@@ -78,10 +88,12 @@ insula_test(gateway_tests SOURCES ${gateway_tests} LIBS insula_gateway)
 foreach(dir physics determinism haptics process scenes_bad curricula_bad)
   file(GLOB src CONFIGURE_DEPENDS tests/${dir}/*_test.cpp)
   set(serial)
-  if(dir STREQUAL process)  # real time: alone on the machine
+  set(libs ${test_libs})
+  if(dir STREQUAL process)  # real time: alone on the machine; pages of theirs speak to the gateway
     set(serial SERIAL)
+    list(APPEND libs insula_network)
   endif()
-  insula_test(${dir}_tests SOURCES ${src} LIBS ${test_libs} ${serial})
+  insula_test(${dir}_tests SOURCES ${src} LIBS ${libs} ${serial})
 endforeach()
 if(TARGET process_tests)  # they start the real programs
   add_library(jumping_clock MODULE tests/process/jumping_clock.cpp)

@@ -10,7 +10,8 @@
 namespace insula::test {
 
 /// The scene loads without a message, runs its script and 40 more steps, and stays finite. Once the hands are still,
-/// its energy (weight included) never exceeds its value at that moment by more than 1 % of its maximum.
+/// its energy (weight included) never exceeds its value at that moment by more than 1 % of its maximum. What the
+/// surgeon may ask for are commands of their components, with usual numbers in range.
 void check_example(const std::filesystem::path& scene);
 /// Equal bits of states and problems in two runs, with opposite orders of the heap, with one and two threads, and after
 /// reset.

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
+#include "core/registry/surgeon_requests.h"
 #include "core/testing/contracts.h"
 #include "core/testing/count_allocations.h"
 #include "core/testing/example.h"
@@ -16,6 +18,21 @@ namespace {
 
 std::string name_of(const std::filesystem::path& scene) {
   return (scene.parent_path().filename() / scene.filename()).string();
+}
+
+/// What the surgeon asks for is a command of the component, and its usual number lies in the command's range.
+void check_requests(Findings& findings, const Component& component) {
+  const auto* takes = dynamic_cast<const TakesSurgeonRequests*>(&component);
+  if (!takes) return;
+  const std::vector<CommandInfo> commands = component.commands();
+  for (const SurgeonRequest& r : takes->surgeon_requests()) {
+    const auto named =
+        std::find_if(commands.begin(), commands.end(), [&](const CommandInfo& c) { return c.name == r.command; });
+    findings.expect(named != commands.end(), "a request that is no command", r.command);
+    if (named != commands.end())
+      findings.expect(named->min <= r.usual && r.usual <= named->max, "a usual number out of the command's range",
+                      fmt::format("{} {}", r.command, r.usual));
+  }
 }
 
 /// Kinetic, elastic, coupling energy and weight.
@@ -73,6 +90,7 @@ void check_example(const std::filesystem::path& scene) {
   auto s = load(scene);
   ASSERT_TRUE(s);
   Findings findings(name_of(scene));
+  for (const Component* c : s->scene().components()) check_requests(findings, *c);
   const int n = int(std::lround(script_length / s->h()));
   double most = 0, still = 0;
   for (int i = 0; i < n + 40; ++i) {

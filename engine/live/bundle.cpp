@@ -12,6 +12,7 @@
 #include "core/base/input_error.h"
 #include "core/base/spoken.h"
 #include "core/mechanics/shell_body.h"
+#include "core/registry/surgeon_requests.h"
 #include "core/sim/settings.h"
 #include "engine/authoring/inventory.h"
 #include "engine/live/bundle_step_data.h"
@@ -227,6 +228,15 @@ std::optional<double> start_value(const Component& component, const CommandInfo&
   return (*param)() * command.min / *param->min();
 }
 
+/// The usual argument of a command that the surgeon may ask for; none: the command is the instructor's alone.
+std::optional<double> usual_request(const Component& component, const CommandInfo& command) {
+  const auto* takes = dynamic_cast<const TakesSurgeonRequests*>(&component);
+  if (!takes) return std::nullopt;
+  for (const SurgeonRequest& r : takes->surgeon_requests())
+    if (r.command == command.name) return r.usual;
+  return std::nullopt;
+}
+
 /// The commands of all components, for pages and scripts.
 Json commands_json(const Scene& scene) {
   Json out = Json::array();
@@ -236,6 +246,7 @@ Json commands_json(const Scene& scene) {
       commands.push_back(
           {{"name", info.name}, {"doc", info.doc}, {"argument", info.argument}, {"min", info.min}, {"max", info.max}});
       if (const auto start = start_value(*c, info)) commands.back()["start"] = *start;
+      if (const auto usual = usual_request(*c, info)) commands.back()["usual"] = *usual;
     }
     if (!commands.empty()) out.push_back({{"id", c->id}, {"element", c->element}, {"commands", commands}});
   }

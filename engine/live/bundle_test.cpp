@@ -42,6 +42,7 @@ class BundleOfAScene : public testing::Test {
     <surface id="high_surface" material="pia"/></soft_body>
   <dissector id="knife" hand="right" model="meshes/tool/probe.urdf" home="0 0 30 mm" shaft="0 0 1" flat="1 0 0"/>
   <strand_springs id="fibres" from="low_surface" to="high_surface" density="20 1/cm2" max_length="4 mm"/>
+  <brain_relaxation id="brain" on="low"/>
   <view eye="100 0 0 mm" target="0 0 0 mm" up="0 0 1" field_of_view="25 deg"/>
   <exercise id="task" title="A task" text="Do it"><goal_strands id="all" text="Divide all"/></exercise>
 </scene>)",
@@ -195,6 +196,15 @@ TEST_F(BundleOfAScene, AHandHasAllItsToolsAndAnArmNone) {
 }
 
 // Shipped geometry: a vessel with its picture surface, and a clip's model in a hand.
+TEST_F(BundleOfAScene, TellsWhatTheSurgeonMayAskFor) {
+  std::map<std::string, Json> commands;
+  for (const Json& group : written().at("commands"))
+    if (group.at("id") == "brain")
+      for (const Json& c : group.at("commands")) commands[c.at("name")] = c;
+  EXPECT_EQ(commands.at("give_mannitol").at("usual"), 0) << "it takes no number";
+  EXPECT_FALSE(commands.at("swell").contains("usual")) << "nobody asks for a complication";
+}
+
 TEST_F(BundleOfAScene, TellsOfVesselsAndArticulatedTools) {
   const std::filesystem::path source = INSULA_SOURCE_DIR;
   simulation_ = test::load_text(R"(<scene>

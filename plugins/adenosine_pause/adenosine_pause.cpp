@@ -3,7 +3,8 @@
 # adenosine_pause
 
 A pause of the heart after a dose of adenosine, which the anaesthetist gives on request. The sac becomes soft, and a
-clip or a dissector meets less. The command is `give_adenosine` with the dose in milligrams.
+clip or a dissector meets less. The command is `give_adenosine` with the dose in milligrams. The surgeon may ask for it;
+the usual dose is 0.35 mg/kg.
 
     <adenosine_pause id="adenosine" pressure="heart" weight="70 kg"/>
 
@@ -33,6 +34,7 @@ duration); Wesseling et al. 1993 (Windkessel: resistance times compliance 1 to 2
 #include "core/base/text.h"
 #include "core/params/number.h"
 #include "core/registry/registry.h"
+#include "core/registry/surgeon_requests.h"
 #include "core/sim/events.h"
 #include "core/sim/simulation.h"
 #include "plugins/pressure/pressure.h"
@@ -42,8 +44,9 @@ namespace {
 
 constexpr double mg = 1e-6, least_dose = 1 * mg;  // kg
 constexpr double recovered_after = 10;            // times `rise`
+constexpr double usual_per_kg = 0.35 * mg;        // Guinn et al. 2011
 
-class AdenosinePause final : public Constraint, public HeartPause {
+class AdenosinePause final : public Constraint, public HeartPause, public TakesSurgeonRequests {
  public:
   Ref<BloodPressure> pressure{this, {.name = "pressure", .doc = "pressure of the heart that pauses"}};
   Param<Mass> weight{
@@ -143,6 +146,10 @@ class AdenosinePause final : public Constraint, public HeartPause {
   std::vector<CommandInfo> commands() const override {
     return {{"give_adenosine", "the heart pauses some seconds later", "dose_mg", std::round(least_dose / mg),
              std::round(most() / mg)}};
+  }
+  std::vector<SurgeonRequest> surgeon_requests() const override {
+    const double usual = std::round(usual_per_kg * weight() / mg);
+    return {{"give_adenosine", std::clamp(usual, std::round(least_dose / mg), std::round(most() / mg))}};
   }
   std::string run_command(std::string_view name, std::string_view argument) override {
     if (name != "give_adenosine") return "unknown command " + in_quotes(name);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/registry/surgeon_requests.h"
 #include "plugins/pressure/pressure.h"
 #include "plugins/pressure/shell_for_test.h"
 #include "plugins/pressure/waveform.h"
@@ -16,14 +17,14 @@ using test::mmHg;
 // 35 mg for 70 kg are 0.5 mg/kg: with 8 s for each mg/kg the heart pauses for 4 s, from 0.5 s on.
 struct Artery : test::TestScene {
   static constexpr double h = 0.01;
-  explicit Artery(const std::string& pressure) {
+  explicit Artery(const std::string& pressure, const std::string& doses = R"(weight="70 kg" most="60 mg")") {
     folder.write("meshes/ball.obj", test::obj_text(test::ball(Vec3(0.04, -0.01, 0.02), 0.004, 2)));
     load(fmt::format(R"(<scene time_step="10 ms">
-  <adenosine_pause id="a" pressure="p" weight="70 kg" delay="500 ms" pause_per_dose="8 s" floor="15 mmHg"
-                   fall="1.6 s" rise="0.5 s" most="60 mg"/>
+  <adenosine_pause id="a" pressure="p" {} delay="500 ms" pause_per_dose="8 s" floor="15 mmHg"
+                   fall="1.6 s" rise="0.5 s"/>
   <shell_body id="artery" mesh="meshes/ball.obj" mesh_unit="m"><test_wall stiffness="50 N/m"/></shell_body>
   <pressure id="p" on="artery" {}/></scene>)",
-                     pressure));
+                     doses, pressure));
   }
   double channel(const char* name) const {
     const ChannelEntry* e = s->channels().find(name);
@@ -95,6 +96,17 @@ TEST(AdenosinePause, RefusesWhatWouldBeTooMuch) {
   f.run(1);
   EXPECT_EQ(f.channel("a.doses"), 0);
   EXPECT_NEAR(f.channel("p.arterial"), 100 * mmHg, 1e-9);
+}
+
+TEST(AdenosinePause, TheSurgeonAsksForTheUsualDose) {
+  const auto usual = [](const std::string& doses) {
+    const Artery f(R"(systolic="100 mmHg" diastolic="100 mmHg")", doses);
+    const auto* takes = f.s ? dynamic_cast<const TakesSurgeonRequests*>(f.s->scene().find("a")) : nullptr;
+    return takes ? takes->surgeon_requests().at(0).usual : std::nan("");
+  };
+  EXPECT_EQ(usual(R"(weight="70 kg")"), 25) << "0.35 mg/kg in whole milligrams";
+  EXPECT_EQ(usual(R"(weight="20 kg")"), 7);
+  EXPECT_EQ(usual(R"(weight="250 kg" most="60 mg")"), 60) << "no more than is given at all";
 }
 
 TEST(AdenosinePause, BelongsToOneHeartAlone) {

@@ -29,13 +29,14 @@ mannitol needs a quarter of an hour.
 #include "core/mechanics/constraint.h"
 #include "core/mechanics/soft_body.h"
 #include "core/registry/registry.h"
+#include "core/registry/surgeon_requests.h"
 #include "core/sim/events.h"
 #include "core/sim/simulation.h"
 
 namespace insula {
 namespace {
 
-class BrainRelaxation final : public Constraint {
+class BrainRelaxation final : public Constraint, public TakesSurgeonRequests {
  public:
   static constexpr std::string_view kind_name = "brain_relaxation";
 
@@ -118,6 +119,9 @@ class BrainRelaxation final : public Constraint {
             {"drain_fluid", "cerebrospinal fluid is drained, and the brain sinks", "", 0, 0},
             {"swell", "the brain swells", "", 0, 0},
             {"end_swelling", "the swelling goes back", "", 0, 0}};
+  }
+  std::vector<SurgeonRequest> surgeon_requests() const override {
+    return {{"give_mannitol"}, {"hyperventilate"}, {"ventilate_normally"}, {"drain_fluid"}};
   }
   std::string run_command(std::string_view name, std::string_view) override {
     struct Effect {

@@ -64,11 +64,11 @@ bool ChannelWatch::back(double value, Comparison comparison) const {
   return comparison == Comparison::above ? value <= limit_ - margin : value >= limit_ + margin;
 }
 
-namespace {
-
 ChannelWatch::Comparison comparison_of(const Param<Choice>& side) {
   return side.is("above") ? ChannelWatch::Comparison::above : ChannelWatch::Comparison::below;
 }
+
+namespace {
 
 class GoalChannel final : public ExerciseRule {
  public:
@@ -166,31 +166,12 @@ class FaultChannel final : public ExerciseRule, public WatchesLimits {
   bool armed_ = true;
 };
 
-class FaultEvent final : public ExerciseRule {
- public:
-  Param<std::string> text{this, {.name = "text", .doc = "what the trainee is told"}};
-  Param<std::string> event{this, {.name = "event", .doc = "event that is a fault each time: \"vein_parted\""}};
-
-  void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
-    fault_ = log.add_fault(id, text());
-    check_event(context, simulation, *this, event);
-  }
-  void observe(const StepReport& r, ExerciseLog& log) override {
-    for (const Event& e : r.events)
-      if (e.kind == event()) log.fault(fault_, r.time, e.value);
-  }
-
- private:
-  int fault_ = 0;
-};
-
 }  // namespace
 
 void register_channel_rules(Registry& registry) {
   registry.add<GoalChannel>("goal_channel", Kind::exercise_rule,
                             "reached when a channel has stayed on one side of a limit");
   registry.add<FaultChannel>("fault_channel", Kind::exercise_rule, "counts how often a channel goes beyond a limit");
-  registry.add<FaultEvent>("fault_event", Kind::exercise_rule, "counts each event of a kind");
 }
 
 }  // namespace insula

@@ -38,4 +38,7 @@ class ChannelWatch {
   double limit_ = 0;  ///< SI
 };
 
+/// Of a parameter with the choices "above" and "below".
+ChannelWatch::Comparison comparison_of(const Param<Choice>& side);
+
 }  // namespace insula

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A goal and a fault on a channel: limits in units, hold and grace, and what is said of a wrong name or unit.
+// Goals and faults on channels and events: limits in units, hold and grace, and what is said of a wrong name or unit.
 #include <gtest/gtest.h>
 
 #include "core/registry/registry.h"
@@ -12,12 +12,17 @@ class Gauge final : public Constraint {
  public:
   Channel<Force> tension{this, {.name = "tension", .doc = "for tests"}};
   Channel<Vec<Force>> pull{this, {.name = "pull", .doc = "for tests"}};
+  EventKind snap{this, {.name = "snap", .doc = "for tests"}};
   void build(const StepContext&, ConstraintBuilder&) override {}
+  void finish(const StepContext& context, const ConstraintSolution&) override {
+    for (; snaps > 0; --snaps) context.events->emit({snap.name(), id, "", 0, context.time + context.h});
+  }
   void publish() override {
     tension.set(value);
     pull.set(Vec3(0, 0.6 * value, 0.8 * value));
   }
   double value = 0;
+  int snaps = 0;  ///< in the next step
 };
 
 struct Bench {
@@ -91,6 +96,48 @@ TEST(ChannelRules, BelowIsTheOtherSide) {
   EXPECT_EQ(b.log().faults()[0].count, 0);
   b.hold(0.09, 5);
   EXPECT_EQ(b.log().faults()[0].count, 1);
+}
+
+TEST(EventRules, AGoalCountsItsEvents) {
+  Bench b(R"(<goal_event id="twice" text="Snap it twice" event="snap" count="2"/>)");
+  ASSERT_TRUE(b.gauge) << b.messages();
+  const auto done = [&] { return b.log().goals()[0].done; };
+  b.gauge->snaps = 1;
+  b.hold(0, 5);
+  EXPECT_FALSE(done());
+  b.loaded.simulation->reset();
+  b.gauge->snaps = 1;
+  b.hold(0, 1);
+  EXPECT_FALSE(done()) << "a reset forgets the first one";
+  b.gauge->snaps = 1;
+  b.hold(0, 1);
+  EXPECT_TRUE(done());
+}
+
+TEST(EventRules, AnEventCountsOnlyOnTheRightSideOfTheLimit) {
+  Bench b(R"(<goal_event text="T" event="snap" channel="g.tension" comparison="below" limit="100 mN"/>
+             <goal_event text="T" event="snap" channel="g.tension" limit="0.3 N"/>)");
+  ASSERT_TRUE(b.gauge) << b.messages();
+  const auto done = [&] { return std::pair(b.log().goals()[0].done, b.log().goals()[1].done); };
+  b.gauge->snaps = 3;
+  b.hold(0.2, 1);
+  b.hold(0.05, 1);
+  b.hold(0.35, 1);
+  EXPECT_EQ(done(), std::pair(false, false)) << "the event comes at another time";
+  b.gauge->snaps = 1;
+  b.hold(0.05, 1);
+  EXPECT_EQ(done(), std::pair(true, false));
+  b.gauge->snaps = 1;
+  b.hold(0.35, 1);
+  EXPECT_EQ(done(), std::pair(true, true));
+}
+
+TEST(EventRules, AWrongEventOrALimitWithoutAChannelIsALocatedError) {
+  const std::string event = Bench(R"(<goal_event text="T" event="snaps"/>)").messages();
+  EXPECT_NE(event.find("s.xml:2:"), std::string::npos) << event;
+  EXPECT_NE(event.find("snap"), std::string::npos) << event;
+  const std::string limit = Bench(R"(<goal_event text="T" event="snap" limit="1 N"/>)").messages();
+  EXPECT_NE(limit.find("is a limit of no channel"), std::string::npos) << limit;
 }
 
 TEST(ChannelRules, AWrongNameOrUnitIsALocatedError) {

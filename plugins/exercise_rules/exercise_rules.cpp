@@ -305,6 +305,7 @@ INSULA_PLUGIN(exercise_rules) {
   registry.add<FaultTorn>("fault_torn", Kind::exercise_rule, "counts strands torn by pulling");
   registry.add<FaultOrder>("fault_order", Kind::exercise_rule, "counts strands cut in the depth before the surface");
   register_channel_rules(registry);
+  register_event_rules(registry);
   register_two_hands_rule(registry);
   registry.add<TimeLimit>("time_limit", Kind::exercise_rule, "ends the exercise when the time is over");
 }

@@ -6,6 +6,7 @@
 namespace insula {
 
 void register_channel_rules(Registry& registry);
+void register_event_rules(Registry& registry);
 void register_two_hands_rule(Registry& registry);
 
 }  // namespace insula

@@ -69,11 +69,12 @@ def case_xml(case, approach):
     return "\n".join(lines) + "\n" + closed([m["motion"] for m in motions(case)], "case")
 
 
-def rupture_xml(case, approach, more):
-    """The exercise `rupture`: the dome tears. Behind a temporary clip no branch has its flow, so none is scored."""
+def torn_xml(case, approach, more):
+    """An exercise in which the dome tears. Behind a temporary clip and in a pause of the heart no branch has its flow,
+    so none is scored."""
     lines = opened(case, more["title"], ['<include file="%s"/>' % torn.CHANCE] + more.get("scene", []))
     lines += exercise(case, more["id"], more["title"], more["text"], more.get("difficulty", case["difficulty"]))
-    lines += rules(case, approach, torn.RULES)
+    lines += rules(case, approach, torn.RULES[more["id"]])
     lines += ["    " + line for line in case.get("rules", []) + more.get("rules", [])]
     lines += ['    <include file="../../parts/%s.xml"/>' % part for part in SCORED]
     lines += branch_metrics(case, "stenosis", "Stenosis of the %s at the end", "stenosis", "last", "low")
@@ -145,8 +146,5 @@ def readme(case, folder):
 def write(case, approach, folder):
     (folder / "case.xml").write_text(case_xml(case, approach), encoding="utf-8")
     for more in case.get("exercises", []):
-        (folder / (more["id"] + ".xml")).write_text(KINDS[more["id"]](case, approach, more), encoding="utf-8")
+        (folder / (more["id"] + ".xml")).write_text(torn_xml(case, approach, more), encoding="utf-8")
     (folder / "README.md").write_text(readme(case, folder), encoding="utf-8")
-
-
-KINDS = {"rupture": rupture_xml}  # by the exercise's id

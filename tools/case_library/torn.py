@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The exercise `rupture` of a case: rupture.xml, and its motions from where the case's own clip lies."""
+"""Exercises of a case in which the dome tears: their motions from where the case's own clip lies."""
 import re
 
 import placed
@@ -9,7 +9,7 @@ from vectors import add, across, turned, unit
 
 ABOVE, BACK = 6, 26  # mm: the tip of the tube over its point, and its way out
 CHANCE = "../../parts/rupture_by_chance.xml"
-RULES = "../../parts/rupture_rules.xml"
+RULES = {"rupture": "../../parts/rupture_rules.xml", "pause": "../../parts/pause_rules.xml"}  # by the exercise's id
 
 
 def neck_clip(folder):
@@ -49,11 +49,14 @@ def tube_of(exercise, field, suction, folder):
 def text(motion, exercise, folder, approach):
     """The text of a motion: `steady`, or another of tools/motions/rupture.py."""
     field = placed.field_of(folder, approach["to_surgeon"])
-    temporary = temporary_of(exercise["temporary"], field)
     clip, pose = neck_clip(folder)
     pose = moved(pose, exercise.get("neck", {}), field)
     tube = tube_of(exercise, field, approach["suction"], folder)
     if motion == "late":
         return rupture.late(pose, tube).text()
+    place = lambda hand: place_clip(hand, pose)
+    if exercise["id"] == "pause":
+        play = {"steady": rupture.in_a_pause, "too_soon": rupture.before_the_pause}[motion]
+        return play(exercise["dose_mg"], clip, pose, place, tube).text()
     play = {"steady": rupture.steady, "left_on": rupture.left_on}[motion]
-    return play(temporary, clip, lambda hand: place_clip(hand, pose), field.view, tube).text()
+    return play(temporary_of(exercise["temporary"], field), clip, place, field.view, tube).text()

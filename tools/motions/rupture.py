@@ -6,6 +6,7 @@ from clip_hand import OUT_OF_FIELD, Script, last_q, place_clip, steady_outside, 
 from vectors import across, add, cross, quaternion, unit
 
 TORN_AT = 1  # s
+ASKED_AT = 2  # s
 DIPPED = 10.5  # s before the end of the motion the tube leaves the blood
 
 
@@ -75,6 +76,32 @@ def left_on(temporary, neck_clip, place, view, tube, wait=4):
     script.right.key(wait, steady_outside(script), last_q(script))
     suck(script, tube, script.right.t - DIPPED)
     return script
+
+
+def paused(dose_mg, neck_clip, pose, place, tube, waits, afterwards):
+    """The dome tears, adenosine is asked for, and `place` puts the clip across the neck after `waits` seconds."""
+    script = Script()
+    script.command(TORN_AT, "ask", "bleeding rupture")
+    script.command(0.1, "ask", "applier load " + neck_clip)
+    script.command(ASKED_AT, "ask", "adenosine give_adenosine %g" % dose_mg)
+    outside = add(pose[0], pose[2], OUT_OF_FIELD)
+    script.right.key(0, outside, pose[1])
+    if waits > 0:
+        script.right.key(waits, outside, pose[1])
+    place(script.right)
+    script.right.key(afterwards, steady_outside(script), last_q(script))
+    suck(script, tube, script.right.t - DIPPED)
+    return script
+
+
+def in_a_pause(dose_mg, neck_clip, pose, place, tube):
+    """The clip is closed while the heart stands still. The motion ends when it has beaten again for a while."""
+    return paused(dose_mg, neck_clip, pose, place, tube, waits=11, afterwards=40)
+
+
+def before_the_pause(dose_mg, neck_clip, pose, place, tube):
+    """The clip is closed before the adenosine acts."""
+    return paused(dose_mg, neck_clip, pose, place, tube, waits=0, afterwards=6)
 
 
 def late(pose, tube):

@@ -219,6 +219,7 @@ function commandsOf(json: Json): types.CommandGroup[] {
       min: Number(c.min ?? 0),
       max: Number(c.max ?? 0),
       start: typeof c.start === 'number' ? c.start : null,
+      usual: typeof c.usual === 'number' ? c.usual : null,
     })),
   }));
 }

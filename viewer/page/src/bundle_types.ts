@@ -94,6 +94,8 @@ export interface CommandData {
   max: number;
   /** What it has set at the start, in its unit; null: not said. */
   start: number | null;
+  /** What the surgeon usually asks the anaesthetist for; null: the command is the instructor's alone. */
+  usual: number | null;
 }
 
 export interface CommandGroup {

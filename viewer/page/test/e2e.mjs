@@ -119,6 +119,19 @@ try {
   await waitFor('resume', () => mock.state.commands.includes('resume'));
   check('pause and resume reach the engine');
 
+  const asks = page.locator('.requests');
+  await asks.locator('summary').click();
+  assert.deepEqual(await asks.locator('button').allTextContents(), ['give adenosine'], 'no command of the instructor');
+  const dose = asks.getByRole('spinbutton');
+  assert.equal(await dose.inputValue(), '25', 'the usual one');
+  await dose.click({ clickCount: 3 });
+  await page.keyboard.type('30');
+  await asks.getByRole('button').click();
+  await waitFor('the dose', () => mock.state.commands.includes('ask adenosine give_adenosine 30'));
+  await asks.getByText(/^done at 0:\d\d/).waitFor(patience);
+  await asks.locator('summary').click();
+  check('the surgeon asks the anaesthetist for what the scene has, and is told when it is done');
+
   assert.equal(mock.state.inputs, 0, 'no hand input before a hand is taken');
   await page.keyboard.press('1');
   await page.mouse.move(240, 160);

@@ -9,11 +9,12 @@ import {
   message,
   numberArgument,
   sceneCommands,
+  surgeonRequests,
   takesNumber,
   toolCommands,
 } from '../src/hud/commands';
 import { niceRange, niceTop } from '../src/hud/curves';
-import { label, stepOf } from '../src/hud/instructor';
+import { label, stepOf, unitOf } from '../src/hud/command_number';
 import { valueText } from '../src/hud/progress';
 import { metricRows, metricText } from '../src/hud/metric_table';
 import { parseMetrics } from '../src/hud/metrics';
@@ -114,12 +115,33 @@ describe('timers', () => {
 });
 
 describe('commands', () => {
-  const systolic = { name: 'set_systolic', doc: '', argument: 'pressure_mmHg', min: 60, max: 220, start: 120 };
+  const systolic = {
+    name: 'set_systolic',
+    doc: '',
+    argument: 'pressure_mmHg',
+    min: 60,
+    max: 220,
+    start: 120,
+    usual: null,
+  };
   it('read as the engine reads them', () => {
     expect(exchange('right', 'applier')).toEqual({ command: 'exchange', argument: 'right applier' });
     expect(ask('applier', 'load', 'clip_mini')).toEqual({ command: 'ask', argument: 'applier load clip_mini' });
     expect(ask('bleeding', 'rupture')).toEqual({ command: 'ask', argument: 'bleeding rupture' });
     expect(ask('a', 'b', '  two words ')).toEqual({ command: 'ask', argument: 'a b two words' });
+  });
+  it('of the surgeon are those with a usual number', () => {
+    const dose = { name: 'give_adenosine', doc: '', argument: 'dose_mg', min: 1, max: 120, start: null, usual: 25 };
+    const commands = [
+      { id: 'heart', element: 'pressure', commands: [systolic] },
+      { id: 'adenosine', element: 'adenosine_pause', commands: [dose, { ...dose, name: 'other', usual: null }] },
+      { id: 'brain', element: 'brain_relaxation', commands: [{ ...dose, name: 'give_mannitol', usual: 0 }] },
+    ];
+    expect(surgeonRequests({ commands } as unknown as Bundle).map((r) => [r.id, r.name, r.usual])).toEqual([
+      ['adenosine', 'give_adenosine', 25],
+      ['brain', 'give_mannitol', 0],
+    ]);
+    expect([unitOf(dose), stepOf(dose)]).toEqual(['mg', 1]);
   });
   it('keep numbers inside their range and plain', () => {
     expect([80, 1e9, -5, NaN, 120.1234567].map((v) => numberArgument(v, systolic))).toEqual([

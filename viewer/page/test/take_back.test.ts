@@ -27,7 +27,7 @@ const bundle = (properties = reach): Bundle =>
       {
         id: 'applier',
         element: 'applier',
-        commands: [{ name: 'load', doc: '', argument: 'clip id', min: 0, max: 0, start: null }],
+        commands: [{ name: 'load', doc: '', argument: 'clip id', min: 0, max: 0, start: null, usual: null }],
       },
     ],
   }) as never;

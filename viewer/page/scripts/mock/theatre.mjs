@@ -31,6 +31,16 @@ export const commands = [
     element: 'bleeding',
     commands: [{ name: 'rupture', doc: 'tears the bleb', argument: '', min: 0, max: 0 }],
   },
+  {
+    id: 'adenosine',
+    element: 'adenosine_pause',
+    commands: [
+      {
+        ...{ name: 'give_adenosine', doc: 'the heart pauses some seconds later', argument: 'dose_mg' },
+        ...{ min: 1, max: 120, usual: 25 },
+      },
+    ],
+  },
 ];
 
 /** mL/min. */
@@ -110,6 +120,7 @@ export class Theatre {
       this.rate = number;
       return '';
     }
+    if (a === 'adenosine' && b === 'give_adenosine') return '';
     return `"${a}" has no command "${b}"`;
   }
 

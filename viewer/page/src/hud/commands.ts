@@ -72,6 +72,23 @@ export function sceneCommands(bundle: Bundle): CommandGroup[] {
   return bundle.commands.filter((g) => g.commands.length > 0 && !bundle.tools.some((t) => t.id === g.id));
 }
 
+export interface Request {
+  /** Component and command, as the engine is asked. */
+  id: string;
+  name: string;
+  command: CommandData;
+  usual: number;
+}
+
+/** What the surgeon may ask the anaesthetist for. */
+export function surgeonRequests(bundle: Bundle): Request[] {
+  return bundle.commands.flatMap(({ id, commands }) =>
+    commands.flatMap((command) =>
+      command.usual === null ? [] : [{ id, name: command.name, command, usual: command.usual }],
+    ),
+  );
+}
+
 /** Commands without an argument of the components whose channels walls show in the infrared picture. */
 export function glowCommands(bundle: Bundle): { id: string; command: CommandData }[] {
   const shown = new Set(bundle.bodies.flatMap((b) => Object.values(b.channelOfRegion)));

@@ -7,7 +7,7 @@ export function returnFocusToField(root: HTMLElement, field: HTMLElement): void 
   window.addEventListener('keydown', () => (byPointer = false), true);
   const back = (e: Event) => {
     if (!byPointer || !(e.target instanceof Element)) return;
-    const control = e.target.closest('button, select, input:not([type=text])');
+    const control = e.target.closest('button, select, input:not([type=text], [type=number])');
     if (!control || control.closest('[role=dialog], [aria-haspopup]') || document.activeElement !== control) return;
     // A list that has just opened needs the focus.
     if (control instanceof HTMLSelectElement && e.type === 'click') return;

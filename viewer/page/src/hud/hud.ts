@@ -21,6 +21,7 @@ import { InstructorPanel } from './instructor';
 import { InventoryPanel } from './inventory_panel';
 import type { Metrics } from './metrics';
 import { NoticePanel } from './notice';
+import { RequestPanel } from './request_panel';
 import { SessionPanel } from './session_panel';
 import { type SoundActions, SoundPanel } from './sound_panel';
 import { type HudState, isOver } from './state';
@@ -59,6 +60,8 @@ export class Hud {
   private readonly exercise = new ExercisePanel();
   readonly toasts = new Toasts();
   private readonly instructor: InstructorPanel | null;
+  /** Of the trainee, who operates. */
+  private readonly requests: RequestPanel | null;
   private readonly guide: GuidePanel;
   private readonly tabs: Tabs;
   private readonly inventory: InventoryPanel;
@@ -99,6 +102,8 @@ export class Hud {
     this.sound = new SoundPanel(actions, 'M');
     this.inventory = new InventoryPanel((item) => actions.chooseItem(item));
     this.instructor = role === 'instructor' ? new InstructorPanel((c) => actions.run(c)) : null;
+    this.requests = mayDrive ? new RequestPanel((c) => actions.run(c)) : null;
+    if (this.requests) this.vitals.root.append(this.requests.root);
     this.view.quality.value = quality;
     root.dataset.role = role;
     const handsPanel = el(
@@ -160,6 +165,7 @@ export class Hud {
     this.vitals.showScene(bundle);
     this.toolList.showScene(bundle);
     this.instructor?.showScene(bundle);
+    this.requests?.showScene(bundle);
     this.message.classList.remove('on');
     this.guide.show(null, false);
     this.hands.forEach((h, k) => h.showScene(bundle.hands.find((x) => x.hand === side(k)) ?? null));
@@ -208,6 +214,7 @@ export class Hud {
   /** Something that happened once. */
   showEvent(e: SimEvent, nowMs: number): void {
     this.instructor?.addEvent(e.sim_time_s, e.kind, e.id, e.text);
+    this.requests?.addEvent(e);
     if (e.kind === 'reset') for (const h of this.hands) h.tray.forget();
     // The tutor's line says hints, and not in a test.
     if (e.kind === 'hint') return;

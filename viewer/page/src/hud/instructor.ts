@@ -4,7 +4,9 @@
 import { spoken } from '../bundle';
 import type { Bundle, CommandData } from '../bundle_types';
 import type { Channels } from '../step_data/channels';
+import { label, stepOf } from './command_number';
 import { ask, message, numberArgument, sceneCommands, takesNumber, type UserCommand } from './commands';
+
 import { CausesPanel } from './causes_panel';
 import { ChannelCurves } from './channel_curves';
 import { TimeChart } from './curves';
@@ -13,7 +15,6 @@ import { el } from './dom';
 import { MetricTable } from './metric_table';
 import type { MetricView } from './metrics';
 import { clockText } from './state';
-import { fixed, quantity } from '../languages/numbers';
 import { said } from '../languages/said';
 import { text } from '../languages/text';
 
@@ -153,17 +154,4 @@ export class InstructorPanel {
     };
     return go;
   }
-}
-
-/** About a hundred stops, a round one. */
-export function stepOf(c: Pick<CommandData, 'min' | 'max'>): number {
-  return 10 ** Math.floor(Math.log10((c.max - c.min) / 60));
-}
-
-/** "pressure_mmHg" says its unit after the last underscore. */
-export function label(value: number, c: Pick<CommandData, 'argument' | 'min' | 'max'>): string {
-  const at = c.argument.replace(/_per_([a-z]+)$/, '_/$1').match(/_(\/?[A-Za-z]+)$/);
-  const unit = at?.[1] ?? '';
-  const digits = Math.max(0, -Math.floor(Math.log10(stepOf(c))));
-  return quantity(fixed(value, digits), unit);
 }
