@@ -87,31 +87,35 @@ struct Draft {
   SceneFacts facts;              ///< with the clip of the best one
 };
 
+/// Whether the author says where the blades lie.
+bool blades_are_given(const Options& o) { return o.lift && o.slide && o.turn; }
+
 /// The best of the ranked plans in the running scene. A plan that an author has fixed is played, and left as it is.
-RehearsedClip rehearsed_clip(SceneFacts f, const CaseFolder& folder, const fs::path& project, const artery::Vessel& v,
+RehearsedClip rehearsed_clip(const Draft& draft, const CaseFolder& folder, const fs::path& project,
                              const std::vector<ClipPlan>& ranked, const Options& o, int plays, Progress& progress) {
   constexpr std::size_t most_plans = 4;
-  const bool fixed = o.lift && o.slide && o.turn;
+  const bool fixed = blades_are_given(o);
   const std::vector<ClipPlan> tried = distinct_plans(ranked, fixed ? 1 : most_plans);
   std::vector<std::string> names;
   for (const ClipPlan& p : tried)
     if (std::find(names.begin(), names.end(), p.clip.name) == names.end()) names.push_back(p.clip.name);
+  SceneFacts f = draft.facts;
   f.clips = on_tray(names);
   f.assets = link_assets(folder, project, f.clips, f.approach);
   write_clipping(f, folder);
-  return rehearse_clipping(exercise_file(folder, 3), folder.path / "3_clipping_steady.csv", v, tried, !fixed, plays,
-                           progress);
+  return rehearse_clipping(exercise_file(folder, 3), folder.path / "3_clipping_steady.csv", draft.vessel, tried, !fixed,
+                           plays, progress);
 }
 
 /// The same. Where no placement is sound, plans with more care are played too, and taken if one of them is.
-template <class Plans>
-RehearsedClip sound_clip(const SceneFacts& f, const CaseFolder& folder, const fs::path& project,
-                         const artery::Vessel& v, const std::vector<ClipPlan>& ranked, const Options& o,
-                         Progress& progress, const Plans& with_more_care) {
+RehearsedClip sound_clip(const Draft& draft, const CaseFolder& folder, const fs::path& project, const Options& o,
+                         Progress& progress) {
   progress.step("rehearsing the clipping");
-  RehearsedClip out = rehearsed_clip(f, folder, project, v, ranked, o, o.plays, progress);
-  if (out.outcome.sound() || (o.lift && o.slide && o.turn)) return out;
-  RehearsedClip careful = rehearsed_clip(f, folder, project, v, with_more_care(), o, (o.plays + 1) / 2, progress);
+  RehearsedClip out = rehearsed_clip(draft, folder, project, draft.ranked, o, o.plays, progress);
+  if (out.outcome.sound() || blades_are_given(o)) return out;
+  const std::vector<ClipPlan> careful_plans =
+      clip_plans(draft.vessel, draft.floor, draft.clips, o, draft.approach, Care::more);
+  RehearsedClip careful = rehearsed_clip(draft, folder, project, careful_plans, o, (o.plays + 1) / 2, progress);
   careful.plays += out.plays;
   return careful.outcome.sound() ? careful : out;
 }
@@ -156,14 +160,11 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   Draft draft(folder, project, o);
   const artery::Vessel& v = draft.vessel;
   const Solid& floor = draft.floor;
-  const std::vector<ClipPlan>& ranked = draft.ranked;
   SceneFacts& f = draft.facts;
   std::vector<Note> notes;
   write_rules(f, folder);
-  RehearsedClip clipped{ranked.front(), {}, 0};
-  if (o.rehearse)
-    clipped = sound_clip(f, folder, project, v, ranked, o, progress,
-                         [&] { return clip_plans(v, floor, draft.clips, o, draft.approach, Care::more); });
+  RehearsedClip clipped{draft.ranked.front(), {}, 0};
+  if (o.rehearse) clipped = sound_clip(draft, folder, project, o, progress);
   const ClipPlan& plan = clipped.plan;
   const std::vector<Note> wrong = o.rehearse ? notes_of(clipped) : notes_of(plan);
   notes.insert(notes.end(), wrong.begin(), wrong.end());

@@ -68,21 +68,28 @@ Vessel made(const artery::Surface& s, const artery::ImportOptions& options) {
   }
 }
 
+/// Cuts off the branch that has no centreline to its end, or throws that again if the vessel needs it.
+void cut_off_lost(artery::Surface& s, const artery::LostOutlet& lost, std::vector<Note>& notes) {
+  const auto cap = std::min_element(s.caps.begin(), s.caps.end(), [&](const auto& a, const auto& b) {
+    return (a.centre - lost.centre).norm() < (b.centre - lost.centre).norm();
+  });
+  if (s.caps.size() < 3 || cap == s.caps.begin() || !remove_branch(s, std::size_t(cap - s.caps.begin()))) throw lost;
+  notes.push_back({Note::Kind::repair,
+                   fmt::format("The branch that ends at {} is too thin on its way for blood to be followed. It was "
+                               "cut off where it begins.",
+                               place(lost.centre)),
+                   "If it matters, make it wider in the program that made the surface."});
+}
+
 /// The vessel without the branches that are too thin on their way for a centreline.
 Vessel made_of_wide_ones(artery::Surface& s, const artery::ImportOptions& options, std::vector<Note>& notes) {
-  for (;;) try {
+  while (true) {
+    try {
       return made(s, options);
     } catch (const artery::LostOutlet& lost) {
-      const auto cap = std::min_element(s.caps.begin(), s.caps.end(), [&](const auto& a, const auto& b) {
-        return (a.centre - lost.centre).norm() < (b.centre - lost.centre).norm();
-      });
-      if (s.caps.size() < 3 || cap == s.caps.begin() || !remove_branch(s, std::size_t(cap - s.caps.begin()))) throw;
-      notes.push_back({Note::Kind::repair,
-                       fmt::format("The branch that ends at {} is too thin on its way for blood to be followed. It was "
-                                   "cut off where it begins.",
-                                   place(lost.centre)),
-                       "If it matters, make it wider in the program that made the surface."});
+      cut_off_lost(s, lost, notes);
     }
+  }
 }
 
 /// Whether no two caps overlap, as they do where a vessel is cut through a fork.
