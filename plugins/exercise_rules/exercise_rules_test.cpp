@@ -37,9 +37,11 @@ class Rules : public ::testing::Test {
     ASSERT_NE(at, std::string::npos);
     text.replace(at, text.find("/>", at) + 2 - at, "<fake_strands id=\"strands\"/>");
     // The fake strands publish no tension, so no goal on it could be reached.
-    const std::size_t goal = text.find("<goal_channel");
-    ASSERT_NE(goal, std::string::npos);
-    text.erase(goal, text.find("/>", goal) + 2 - goal);
+    for (const char* of_tension : {"<goal_channel", "<goal_event"}) {
+      const std::size_t goal = text.find(of_tension);
+      ASSERT_NE(goal, std::string::npos);
+      text.erase(goal, text.find("/>", goal) + 2 - goal);
+    }
     auto loaded = load_simulation_text(text, example, registry, 1);
     ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
     s = std::move(loaded.simulation);
