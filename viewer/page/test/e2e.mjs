@@ -119,6 +119,8 @@ try {
   await waitFor('resume', () => mock.state.commands.includes('resume'));
   check('pause and resume reach the engine');
 
+  const patient = page.getByRole('button', { name: 'Patient and exercise' });
+  await patient.click(); // on a narrow screen
   const asks = page.locator('.requests');
   await asks.locator('summary').click();
   assert.deepEqual(await asks.locator('button').allTextContents(), ['give adenosine'], 'no command of the instructor');
@@ -130,6 +132,7 @@ try {
   await waitFor('the dose', () => mock.state.commands.includes('ask adenosine give_adenosine 30'));
   await asks.getByText(/^done at 0:\d\d/).waitFor(patience);
   await asks.locator('summary').click();
+  await patient.click();
   check('the surgeon asks the anaesthetist for what the scene has, and is told when it is done');
 
   assert.equal(mock.state.inputs, 0, 'no hand input before a hand is taken');
