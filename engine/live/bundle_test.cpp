@@ -197,8 +197,9 @@ TEST_F(BundleOfAScene, AHandHasAllItsToolsAndAnArmNone) {
 
 // Shipped geometry: a vessel with its picture surface, and a clip's model in a hand.
 TEST_F(BundleOfAScene, TellsWhatTheSurgeonMayAskFor) {
+  const Json bundle = written();
   std::map<std::string, Json> commands;
-  for (const Json& group : written().at("commands"))
+  for (const Json& group : bundle.at("commands"))
     if (group.at("id") == "brain")
       for (const Json& c : group.at("commands")) commands[c.at("name")] = c;
   EXPECT_EQ(commands.at("give_mannitol").at("usual"), 0) << "it takes no number";
