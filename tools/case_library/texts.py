@@ -97,25 +97,32 @@ def shifted(motion):
     return ", ".join(words)
 
 
-def how_made(motion):
+def called(case, branch):
+    return next((b["called"] for b in branches(case) if b["name"] == branch), branch)
+
+
+def how_made(case, motion):
     """Where a motion comes from that the case builder has not found."""
     if "from" in motion:
         return "`case_%s.csv` is the scripted motion `%s`." % (motion["motion"], motion["from"])
-    said = "`case_%s.csv` brings the clip `%s` to the place at the neck that `../library.json` states."
-    return said % (motion["motion"], motion["clip"])
+    where = "to the place at the neck"
+    if "across" in motion:
+        where = "across the %s, at the place" % called(case, motion["across"]["name"])
+    said = "`case_%s.csv` brings the clip `%s` %s that `../library.json` states."
+    return said % (motion["motion"], motion["clip"], where)
 
 
 def how_moved(case, folder):
     """Where both motions come from."""
     steady, failing = motions(case)
     if scripted(steady):
-        said = [how_made(steady)]
+        said = [how_made(case, steady)]
     else:
         said = ["The case builder found the place of the clip `%s` by playing." % torn.neck_clip(folder)[0]]
         by = shifted(steady)
         said += ["In `case_steady.csv` it is moved by %s." % by if by else "`case_steady.csv` closes it there."]
     by = "In `case_%s.csv` it is moved by %s." % (failing["motion"], shifted(failing))
-    said += [how_made(failing) if scripted(failing) else by]
+    said += [how_made(case, failing) if scripted(failing) else by]
     return " ".join(said)
 
 
