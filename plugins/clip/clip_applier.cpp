@@ -190,7 +190,7 @@ std::string ClipApplier::release() {
   if (!clip_) return "there is no clip in the applier";
   if (held_opening_ > 0 && clip_->stop_force() > 0) return "close the jaws before you let the clip go";
   clip_->let_go();
-  say(released, clip_->id, "Clip " + clip_->id + " let go");
+  say(released, clip_->id, fmt::format("Clip {} let go", clip_->id));
   empty();
   return {};
 }
@@ -226,7 +226,7 @@ std::string ClipApplier::take() {
   if (!best) return askew ? "the applier is not in line with the clip" : "no clip is within reach";
   grasp(best, compose(inverse(pose()), best->pose()), best_nominal);
   best->take(*this);
-  say(taken, best->id, "Clip " + best->id + " taken");
+  say(taken, best->id, fmt::format("Clip {} taken", best->id));
   return {};
 }
 
@@ -248,7 +248,7 @@ std::string ClipApplier::load(std::string_view wanted) {
   const Pose in = held_properly(*c, false);
   grasp(c, in, in);
   c->load(*this, compose(pose(), in));
-  say(loaded, c->id, "Clip " + c->id + " loaded");
+  say(loaded, c->id, fmt::format("Clip {} loaded", c->id));
   return {};
 }
 

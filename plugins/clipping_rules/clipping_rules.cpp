@@ -31,6 +31,7 @@ Sources: Sindou, Acevedo, Turjman 1998 (grades); neck_judge.h describes the geom
 #include <algorithm>
 #include <limits>
 
+#include "core/base/spoken.h"
 #include "core/base/text.h"
 #include "core/registry/registry.h"
 #include "core/sim/exercise.h"
@@ -299,7 +300,7 @@ class GoalClipped final : public ExerciseRule {
     if (missing.temporary) what = "The neck is shut: take the temporary clip off.";
     else if (missing.branch >= 0)
       what += fmt::format("{}The {} branch flows at {:.0f} %.", what.empty() ? "" : " ",
-                          branch_names_[std::size_t(missing.branch)], missing.flow);
+                          spoken(branch_names_[std::size_t(missing.branch)]), missing.flow);
     log.message(what, r.time);
   }
 

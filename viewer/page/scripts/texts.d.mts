@@ -2,6 +2,8 @@ export const languages: string[];
 export function catalogue(language: string): Record<string, string>;
 export function allTexts(): { key: string; where: string }[];
 export function exerciseTexts(): { key: string; kind: string }[];
+export function engineMessages(): { key: string; kind: string }[];
+export function pluginSources(): string;
 export function builderSources(): string;
 export function builderMessages(): string[];
 export function englishMessages(): string[];

@@ -44,10 +44,23 @@ export const exerciseTexts = () => JSON.parse(readFileSync(kept, 'utf8'));
 /** Messages of the case builder, as its page shows them in English. */
 export const builderTexts = () => JSON.parse(readFileSync(join(here, 'builder_texts.json'), 'utf8'));
 
+/** Messages that the engine makes of numbers and names. */
+export const engineMessages = () =>
+  JSON.parse(readFileSync(join(here, '../src/languages/engine_messages.json'), 'utf8')).map((key) => ({
+    ...{ key, kind: 'message of the engine' },
+  }));
+
 /** Its sources, with texts that go on over several lines in one piece. */
 export function builderSources() {
   const of = join(project, 'tools/case_builder');
   const files = readdirSync(of).filter((f) => f.endsWith('.cpp') && !f.endsWith('_test.cpp'));
+  return files.map((f) => readFileSync(join(of, f), 'utf8').replace(/"\s*\n\s*"/g, '')).join('\n');
+}
+
+/** All sources of plugins, likewise. */
+export function pluginSources() {
+  const of = join(project, 'plugins');
+  const files = readdirSync(of, { recursive: true }).filter((f) => f.endsWith('.cpp') && !f.endsWith('_test.cpp'));
   return files.map((f) => readFileSync(join(of, f), 'utf8').replace(/"\s*\n\s*"/g, '')).join('\n');
 }
 
@@ -95,7 +108,8 @@ export function allTexts() {
 
 function readTexts() {
   const found = new Map(pageTexts().map((t) => [t.key, t.where]));
-  for (const { key, kind } of [...exerciseTexts(), ...builderTexts()]) if (!found.has(key)) found.set(key, kind);
+  for (const { key, kind } of [...exerciseTexts(), ...builderTexts(), ...engineMessages()])
+    if (!found.has(key)) found.set(key, kind);
   return [...found].map(([key, where]) => ({ key, where }));
 }
 

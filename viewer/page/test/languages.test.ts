@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { afterEach, expect, test } from 'vitest';
 
+import engineMessages from '../src/languages/engine_messages.json';
+import { pluginSources } from '../scripts/texts.mjs';
 import { languageOf } from '../src/languages/languages';
 import { fixed, significant, withoutSign } from '../src/languages/numbers';
 import { said } from '../src/languages/said';
@@ -44,6 +46,28 @@ test('what the engine says is translated whole, without its numbers, or by its n
   expect(said('1.7 N')).toBe('1,7 N');
   expect(said('No 1 knows this: text')).toBe('No 1 knows this: text');
   expect(said('constructor')).toBe('constructor');
+});
+
+test('messages that the engine makes of numbers and names are translated, several in a row', () => {
+  setLanguage('de', {
+    'A remnant stands above {0} % of the neck (grade {1}).': 'Ein Rest steht über {0} % des Halses (Grad {1}).',
+    'The {name} branch flows at {0} %.': 'Ast {name}: {0} % seines Flusses.',
+    'Clip {name} loaded': 'Clip {name} geladen',
+    'left a2': 'linke A2',
+  });
+  expect(said('A remnant stands above 40 % of the neck (grade 3). The left a2 branch flows at 7.5 %.')).toBe(
+    'Ein Rest steht über 40 % des Halses (Grad 3). Ast linke A2: 7,5 % seines Flusses.',
+  );
+  expect(said('Clip fenestrated_3_5_stem_90 loaded')).toBe('Clip fenestrated 3 5 stem 90 geladen');
+  expect(said('The neck is shut: take the temporary clip off.')).toBe('The neck is shut: take the temporary clip off.');
+  const half = 'The left a2 branch flows at 7 %. And nobody knows this.';
+  expect(said(half)).toBe(half);
+});
+
+test('each of these messages is one of a plugin', () => {
+  const bare = (words: string) => words.replace(/\{[:.\w]*\}/g, '{}');
+  const all = bare(pluginSources());
+  expect(engineMessages.filter((message) => !all.includes(bare(message)))).toEqual([]);
 });
 
 test('numbers have the decimal sign of the language', () => {

@@ -4,6 +4,7 @@
 import { fixed } from '../languages/numbers';
 import { said, saidWith } from '../languages/said';
 import { text } from '../languages/text';
+import { patternOf } from '../languages/message_pattern';
 import { exerciseText } from './exercise_text';
 import { partText } from './part_words';
 
@@ -37,22 +38,10 @@ export const namedMessages = [
 
 const numeral = /^-?\d+(?:\.\d+)?$/;
 
-/** A pattern of a message, and the names of its arguments. */
-function patternOf(key: string): { pattern: RegExp; names: string[] } {
-  const names: string[] = [];
-  const pattern = key
-    .split(/(\{\w+\})/)
-    .map((piece) => {
-      if (!/^\{\w+\}$/.test(piece)) return piece.replace(/[.*+?^${}()|[\]\\]/g, '\\$&');
-      const name = piece.slice(1, -1);
-      names.push(name);
-      return /^(\d+|after|before)$/.test(name) ? '(-?\\d+(?:\\.\\d+)?)' : '([^:;]+?)';
-    })
-    .join('');
-  return { pattern: new RegExp(`^${pattern}$`), names };
-}
-
-const patterns = namedMessages.map((key) => ({ key, ...patternOf(key) }));
+const patterns = namedMessages.map((key) => {
+  const { pattern, names } = patternOf(key);
+  return { key, pattern: new RegExp(`^${pattern}$`), names };
+});
 
 /** What the case builder calls something, for a reader. */
 export function nameWords(name: string): string {
