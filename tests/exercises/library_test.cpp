@@ -89,7 +89,9 @@ TEST_P(LibraryCase, TheOtherMotionFailsForTheDeclaredReason) {
   test::ToldHints told;
   test::Played o = test::play_motion(scene, fails.at("motion"), -1, told.listener());
   expect_failure(o, fails);
-  if (fails.contains("hint")) EXPECT_TRUE(told.first_cue.contains(fails["hint"])) << fails["hint"] << " was not told";
+  if (fails.contains("hint")) {
+    EXPECT_TRUE(told.first_cue.contains(fails["hint"])) << fails["hint"] << " was not told";
+  }
   if (fails.contains("fault")) return;
   EXPECT_EQ(o.state, ExerciseState::running);
   EXPECT_GE(o.measures["grade"], 2);
