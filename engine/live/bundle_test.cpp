@@ -195,7 +195,6 @@ TEST_F(BundleOfAScene, AHandHasAllItsToolsAndAnArmNone) {
   }
 }
 
-// Shipped geometry: a vessel with its picture surface, and a clip's model in a hand.
 TEST_F(BundleOfAScene, TellsWhatTheSurgeonMayAskFor) {
   const Json bundle = written();
   std::map<std::string, Json> commands;
@@ -206,6 +205,7 @@ TEST_F(BundleOfAScene, TellsWhatTheSurgeonMayAskFor) {
   EXPECT_FALSE(commands.at("swell").contains("usual")) << "nobody asks for a complication";
 }
 
+// Shipped geometry: a vessel with its picture surface, and a clip's model in a hand.
 TEST_F(BundleOfAScene, TellsOfVesselsAndArticulatedTools) {
   const std::filesystem::path source = INSULA_SOURCE_DIR;
   simulation_ = test::load_text(R"(<scene>

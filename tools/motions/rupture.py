@@ -47,11 +47,17 @@ def suck(script, tube, seconds):
     script.left.key(2.0, tube.outside, tube.turned, 0)
 
 
-def torn(temporary, neck_clip, place, view):
-    """The dome tears. The temporary clip, then `place` moves the hand that puts the other clip across the neck."""
+def begun(clip):
+    """The dome tears, and a clip is in the applier."""
     script = Script()
     script.command(TORN_AT, "ask", "bleeding rupture")
-    script.command(0.1, "ask", "applier load " + temporary.clip)
+    script.command(0.1, "ask", "applier load " + clip)
+    return script
+
+
+def torn(temporary, neck_clip, place, view):
+    """The dome tears. The temporary clip, then `place` moves the hand that puts the other clip across the neck."""
+    script = begun(temporary.clip)
     place_clip(script.right, temporary.put, approach=2.0, open_at=9)
     away = add(steady_outside(script), view, 30)
     script.right.key(0.8, away, last_q(script))
@@ -80,9 +86,7 @@ def left_on(temporary, neck_clip, place, view, tube, wait=4):
 
 def paused(dose_mg, neck_clip, pose, place, tube, waits, afterwards):
     """The dome tears, adenosine is asked for, and `place` puts the clip across the neck after `waits` seconds."""
-    script = Script()
-    script.command(TORN_AT, "ask", "bleeding rupture")
-    script.command(0.1, "ask", "applier load " + neck_clip)
+    script = begun(neck_clip)
     script.command(ASKED_AT, "ask", "adenosine give_adenosine %g" % dose_mg)
     outside = add(pose[0], pose[2], OUT_OF_FIELD)
     script.right.key(0, outside, pose[1])

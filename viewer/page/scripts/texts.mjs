@@ -47,7 +47,8 @@ export const builderTexts = () => JSON.parse(readFileSync(join(here, 'builder_te
 /** Messages that the engine makes of numbers and names. */
 export const engineMessages = () =>
   JSON.parse(readFileSync(join(here, '../src/languages/engine_messages.json'), 'utf8')).map((key) => ({
-    ...{ key, kind: 'message of the engine' },
+    key,
+    kind: 'message of the engine',
   }));
 
 /** Its sources, with texts that go on over several lines in one piece. */

@@ -137,7 +137,7 @@ describe('commands', () => {
       { id: 'adenosine', element: 'adenosine_pause', commands: [dose, { ...dose, name: 'other', usual: null }] },
       { id: 'brain', element: 'brain_relaxation', commands: [{ ...dose, name: 'give_mannitol', usual: 0 }] },
     ];
-    expect(surgeonRequests({ commands } as unknown as Bundle).map((r) => [r.id, r.name, r.usual])).toEqual([
+    expect(surgeonRequests({ commands } as unknown as Bundle).map((r) => [r.id, r.command.name, r.usual])).toEqual([
       ['adenosine', 'give_adenosine', 25],
       ['brain', 'give_mannitol', 0],
     ]);

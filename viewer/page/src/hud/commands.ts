@@ -73,9 +73,8 @@ export function sceneCommands(bundle: Bundle): CommandGroup[] {
 }
 
 export interface Request {
-  /** Component and command, as the engine is asked. */
+  /** Of the component. */
   id: string;
-  name: string;
   command: CommandData;
   usual: number;
 }
@@ -83,9 +82,7 @@ export interface Request {
 /** What the surgeon may ask the anaesthetist for. */
 export function surgeonRequests(bundle: Bundle): Request[] {
   return bundle.commands.flatMap(({ id, commands }) =>
-    commands.flatMap((command) =>
-      command.usual === null ? [] : [{ id, name: command.name, command, usual: command.usual }],
-    ),
+    commands.flatMap((command) => (command.usual === null ? [] : [{ id, command, usual: command.usual }])),
   );
 }
 

@@ -35,8 +35,8 @@ export class RequestPanel {
     if (place) setText(place, text('done at {time}', { time: clockText(e.sim_time_s) }));
   }
 
-  private makeRow(r: Request): HTMLElement {
-    const { id, name, command } = r;
+  private makeRow({ id, command, usual }: Request): HTMLElement {
+    const { name } = command;
     const go = el('button', { type: 'button', title: said(command.doc), 'data-ask': `${id} ${name}` }, spoken(name));
     const done = el('small', { role: 'status' });
     this.done.set(`${id} ${name}`, done);
@@ -49,7 +49,7 @@ export class RequestPanel {
       min: String(command.min),
       max: String(command.max),
       step: String(stepOf(command)),
-      value: String(r.usual),
+      value: String(usual),
       'aria-label': `${spoken(name)} ${spoken(command.argument)}`,
     });
     go.onclick = () => this.run(ask(id, name, numberArgument(number.valueAsNumber, command)));

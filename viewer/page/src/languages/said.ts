@@ -23,7 +23,7 @@ export function withoutNumbers(english: string): { key: string; numbers: string[
 export const isMeasured = (key: string): boolean => key === '{0}' || measured.test(key);
 
 /** As many decimals as were written. */
-const localized = (n: string): string => fixed(Number(n), n.split('.')[1]?.length ?? 0);
+export const localized = (n: string): string => fixed(Number(n), n.split('.')[1]?.length ?? 0);
 
 /** A key of the catalogues with its arguments; null: it has no translation. */
 export const saidWith = (key: string, values: TextValues): string | null =>

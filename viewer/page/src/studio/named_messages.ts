@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Messages of the case builder with names in them, such as that of a lobe. Each is a key of the catalogues:
 // "There is no place for strands to the {part}." A name is said in the reader's language, and so are numbers.
-import { fixed } from '../languages/numbers';
-import { said, saidWith } from '../languages/said';
+import { localized, said, saidWith } from '../languages/said';
 import { text } from '../languages/text';
 import { patternOf } from '../languages/message_pattern';
 import { exerciseText } from './exercise_text';
@@ -64,9 +63,7 @@ export function nameWords(name: string): string {
 }
 
 const wordsOf = (value: string): string =>
-  numeral.test(value)
-    ? fixed(Number(value), value.split('.')[1]?.length ?? 0)
-    : value.split(', ').map(nameWords).join(', ');
+  numeral.test(value) ? localized(value) : value.split(', ').map(nameWords).join(', ');
 
 /** A message of the catalogues in the reader's language, whatever names are in it, or back as it is. */
 export function saidWithNames(english: string): string {
