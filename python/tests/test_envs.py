@@ -15,9 +15,10 @@ from pettingzoo.test import parallel_api_test  # noqa: E402
 from insula import envs  # noqa: E402
 
 NAMES = ["insula/%s%s-v0" % (name, hands) for name in envs.EXERCISES for hands in ("", "Right")]
+FOUR = ["insula/%s-v0" % n for n in ("SylvianFissure", "AneurysmDissection", "Clipping", "Rupture")]
 
 
-@pytest.mark.parametrize("name", [*NAMES[::2], NAMES[1]])
+@pytest.mark.parametrize("name", [*FOUR, NAMES[1], "insula/ClippingBasilarTip-v0"])
 def test_check_env(name):
     env = gymnasium.make(name, render_mode="rgb_array")
     with warnings.catch_warnings(record=True) as said:
@@ -28,7 +29,7 @@ def test_check_env(name):
 
 
 def test_the_names_of_the_manual_are_registered():
-    assert "insula/Clipping-v0" in NAMES
+    assert set(FOUR) < set(NAMES) and set(NAMES) <= set(gymnasium.registry)
     with pytest.raises(KeyError):
         envs.ExerciseEnv("Clippin")
 
@@ -85,6 +86,29 @@ def test_a_demonstration_is_worth_more_than_rest():
     assert rest == pytest.approx(-1, abs=0.5)  # time alone
     assert info["progress"] > 3 and not any(info["faults"].values())
     assert shown > 3
+
+
+def test_every_case_of_the_library_is_an_environment():
+    cases = {n for n, file in insula.scenes().items() if file.name == "case.xml"}
+    assert len(cases) >= 11
+    assert {e.scene for e in envs.EXERCISES.values() if e.name.startswith("Clipping")} == {*cases, "clipping"}
+
+
+def test_a_neck_that_needs_two_clips():
+    """The hands of the motion alone: the task loads the second clip, and its place becomes the aim."""
+    task = envs.Task("ClippingMcaTwoClips", ("right",), 6, None, None)
+    steady = task.simulation.motion("steady")
+    hand = task.hands["right"]
+    hand.move = lambda s, *_: s.set_hand("right", *steady.at("right", s.time + s.time_step))
+    assert len(task.clips) == 2
+    task.begin(None)
+    nearest = [1.0, 1.0]
+    while task.simulation.time < steady.duration:
+        task.act({"right": np.zeros(8)})
+        nearest[task.placed] = min(nearest[task.placed], np.linalg.norm(task.aim("right")))
+    assert task.placed == 1
+    assert max(nearest) < 0.001
+    assert task.info()["goals"]["clip"]
 
 
 def test_what_an_agent_sees():

@@ -16,6 +16,19 @@ def test_a_scene_by_file_name_and_text():
         print(block.goals)
 
 
+def test_names_of_shipped_scenes():
+    scenes = insula.scenes()
+    assert scenes["basilar_tip"].parts[-2:] == ("basilar_tip", "case.xml")
+    assert scenes["basilar_tip/pause"].name == "pause.xml"
+    assert len(set(scenes.values())) == len(scenes)
+    for name, file in scenes.items():
+        assert insula.shipped.find(name) == file
+    assert insula.shipped.find("3_clipping") == scenes["clipping"]
+    for wrong, nearest in (("basilar_tipp", "basilar_tip"), ("4_clipping", "clipping"), ("case", "there are")):
+        with pytest.raises(FileNotFoundError, match=nearest):
+            insula.load(wrong)
+
+
 def test_a_text_finds_its_files_beside_its_path():
     folder = insula.shipped.folder() / "meshes/examples"
     text = """<scene><soft_body id="b" mesh="block.msh" mesh_unit="mm"><corotational_fem/></soft_body></scene>"""

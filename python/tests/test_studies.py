@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Studies: files and their errors, the plan, rows, and what a scene is told from outside."""
 
+import dataclasses
 import io
 import time
 
@@ -121,6 +122,13 @@ def test_the_plan_is_stable_and_knows_what_changed(tmp_path):
         st.write(tmp_path, axes, duration=length, scene=scene)
         assert not {r.id for r in first.runs} & {r.id for r in studies.plan(file).runs}
     assert [r.number for r in planning.sample(first.runs, 3)] == [0, 4, 8]
+
+
+def test_scenes_have_different_labels(tmp_path):
+    study = studies.plan(st.write(tmp_path)).study
+    many = [tmp_path / name for name in ("a/case.xml", "b/case.xml", "a/tear.xml", "b/tear.xml", "3_open.xml")]
+    labels = dataclasses.replace(study, scenes=tuple(many)).labels
+    assert labels == ("a", "b", "a/tear", "b/tear", "3_open")
 
 
 def test_a_row_is_what_a_run_gives(tmp_path):

@@ -2,7 +2,8 @@
 """The exercises as environments: Gymnasium (`gymnasium.make("insula/Clipping-v0")`) and PettingZoo (`parallel_env`).
 
 `import insula` registers them where Gymnasium is installed. Each exercise has an environment for both hands, and one
-for the right hand, whose left hand follows the exercise's motion: "insula/ClippingRight-v0".
+for the right hand, whose left hand follows the exercise's motion: "insula/ClippingRight-v0". So has each case of the
+library: "insula/ClippingBasilarTip-v0".
 """
 
 from __future__ import annotations

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
-from insula import Channels
+from insula import Channels, shipped
 
 Progress = Callable[[Channels], float]
 
@@ -24,9 +24,9 @@ class Exercise:
     name: str
     scene: str
     progress: Progress
-    commands: tuple[tuple[str, str], ...] = ()  # done at each start
+    commands: tuple[tuple[str, str], ...] = ()  # done at each start, after the clip is loaded
     lines: tuple[str, ...] = ()  # drawables whose lines are the next aims, such as strands that stand
-    aim_at: Mapping[str, float] = field(default_factory=dict)  # hand: time of the motion "steady" whose pose is its aim
+    clip: int = 0  # first clip of the motion "steady" that stays on the neck, from 1: it is loaded; 0: none
     most_steps: int = 600  # decisions of an episode
 
 
@@ -40,13 +40,26 @@ def _opened(channels: Channels) -> float:
 
 def _clipped(channels: Channels) -> float:
     shut = 1 - min(known(channels, "clip.grade", 5) / 5, 1)
-    flow = min(known(channels, "clip.superior.flow", 1), known(channels, "clip.inferior.flow", 1), 1)
-    return 8 * shut + 2 * flow
+    flow = min((known(channels, k, 1) for k in channels if k.startswith("clip.") and k.endswith(".flow")), default=1)
+    return 8 * shut + 2 * min(flow, 1)
 
 
 def _stopped(channels: Channels) -> float:
     bleeding = min(known(channels, "bleeding.rate", 0) / 1e-6, 1)  # of 60 ml/min
     return _clipped(channels) - 4 * bleeding
+
+
+CLIPPING = Exercise("Clipping", "clipping", _clipped, clip=1)
+RUPTURE = Exercise("Rupture", "rupture", _stopped, commands=(("ask", "bleeding rupture"),), clip=2)
+
+
+def _of_the_library() -> Iterator[Exercise]:
+    """The case "basilar_tip" is ClippingBasilarTip. The rupture of a case is as exercise 4."""
+    for scene, file in shipped.scenes().items():
+        case = scene.partition("/")[0]
+        kind = {"case": CLIPPING, "rupture": RUPTURE}.get(file.stem)
+        if file.parent.name == case and kind:
+            yield replace(kind, name=kind.name + "".join(w.capitalize() for w in case.split("_")), scene=scene)
 
 
 EXERCISES = {
@@ -59,15 +72,8 @@ EXERCISES = {
             _divided,
             lines=("to_frontal.fibres", "to_temporal.fibres", "to_branches.fibres"),
         ),
-        Exercise(
-            "Clipping", "clipping", _clipped, commands=(("ask", "applier load angled"),), aim_at={"right": 6.0}
-        ),
-        Exercise(
-            "Rupture",
-            "rupture",
-            _stopped,
-            commands=(("ask", "applier load angled"), ("ask", "bleeding rupture")),
-            aim_at={"right": 16.7},
-        ),
+        CLIPPING,
+        RUPTURE,
+        *_of_the_library(),
     )
 }

@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 import insula
+from insula import Motion
 from insula.envs.exercises import EXERCISES, Exercise
 from insula.envs.hands import Hand
 from insula.rotations import axes
@@ -17,6 +20,28 @@ FORCE = 0.1  # N
 # What one unit of a channel without a range is seen as, by SI unit.
 SCALES = {"N": 0.1, "Pa": 13332.0, "m": 0.01, "m3/s": 1e-6, "m3": 1e-5, "s": 10.0, "Hz": 1000.0}
 GOAL, FAULT, FAILED, TIME = 10.0, -1.0, -10.0, -0.01
+CLIP_HAND = "right"  # which holds the applier
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A clip that a motion places. load: what the scrub nurse is asked; place: of the hand that lets it go, m."""
+
+    load: str
+    place: np.ndarray
+
+
+def clips_of(motion: Motion, step: float = 0.05) -> list[Clip]:
+    """The clips of a motion, in order: each load with the pose at which button 2 lets it go."""
+    loads = [(t, argument) for t, verb, argument in motion.commands if verb == "ask" and " load " in argument]
+    clips = []
+    for (begins, load), ends in zip(loads, [t for t, _ in loads[1:]] + [motion.duration]):
+        for t in np.arange(begins, ends, step):
+            position, _, _, lets_go = motion.at(CLIP_HAND, float(t))
+            if lets_go:
+                clips.append(Clip(load, np.array(position)))
+                break
+    return clips
 
 
 class Task:
@@ -29,7 +54,8 @@ class Task:
         self.steps = steps
         self.middle = np.array(self.simulation.view[1] if self.simulation.view else (0, 0, 0))
         steady = self.simulation.motion("steady") if "steady" in self.simulation.motions else None
-        self.aims = {h: np.array(steady.at(h, t)[0]) for h, t in self.exercise.aim_at.items() if steady}
+        self.clips = clips_of(steady)[self.exercise.clip - 1 :] if steady and self.exercise.clip else []
+        self.placed = 0
         others = {"left", "right"} - set(hands)
         self.helper = self.simulation.motion(helper) if helper and others else None
         self.helped = sorted(h for h in others if self.helper and self.helper.moves(h))
@@ -48,7 +74,9 @@ class Task:
             s.draw_complications(seed)
         if s.steps > 0:  # a scene that was just loaded is at its start
             s.reset()
-        self.decisions = 0
+        self.decisions, self.placed = 0, 0
+        if self.clips:
+            s.command("ask", self.clips[0].load)
         for verb, argument in self.exercise.commands:
             s.command(verb, argument)
         for hand in self.hands.values():
@@ -68,8 +96,16 @@ class Task:
                 for name in self.helped:
                     s.set_hand(name, *self.helper.at(name, s.time + s.time_step))
             s.step()
+        self._next_clip()
         self.decisions += 1
         return self._reward(), s.exercise_state != "running"
+
+    def _next_clip(self) -> None:
+        """A neck that needs several clips: the next one is loaded once one was let go and the applier is drawn out."""
+        if self.placed + 1 < len(self.clips) and self.simulation.channels["clip.applications"] > self.placed:
+            with contextlib.suppress(insula.CommandRefused):  # while the applier is in the field
+                self.simulation.command("ask", self.clips[self.placed + 1].load)
+                self.placed += 1
 
     def _reward(self) -> float:
         s, reward = self.simulation, TIME
@@ -88,14 +124,14 @@ class Task:
         return self.exercise.progress(self.simulation.channels) - min(nearest, default=0.0) / FIELD
 
     def has_aim(self, hand: str) -> bool:
-        return hand in self.aims or bool(self._drawables)
+        return (hand == CLIP_HAND and bool(self.clips)) or bool(self._drawables)
 
     def aim(self, hand: str) -> np.ndarray:
-        """From the tip of the hand's tool to what is next, m: its place, or the middle of the nearest line that stands.
-        Zero when nothing is left."""
+        """From the tip of the hand's tool to what is next, m: the place of the clip, or the middle of the nearest line
+        that stands. Zero when nothing is left."""
         tip = np.array(self.simulation.tip_pose(hand)[0])
-        if hand in self.aims:
-            return self.aims[hand] - tip
+        if hand == CLIP_HAND and self.clips:
+            return self.clips[self.placed].place - tip
         lines = [d.data for d in self._drawables]
         middles = [(a[:, :3] + a[:, 4:7])[a[:, 3] >= 0] / 2 for a in lines if a.shape[1] == 8]
         away = np.concatenate([np.zeros((0, 3)), *middles]) - tip

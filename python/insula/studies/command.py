@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import pathlib
 import signal
 import sys
@@ -45,10 +46,14 @@ def parser() -> argparse.ArgumentParser:
 
 def _list(plan: Plan, folder: pathlib.Path) -> int:
     open_runs = {r.id for r in store.Store(folder).open(plan.runs)}
-    for r in plan.runs:
-        row = running.describe(plan.study, r)
-        what = ["%s=%s" % (k, v) for k, v in row.items() if k not in ("run", "number", "status") and v is not None]
-        print(r.id, "open    " if r.id in open_runs else "finished", *what)
+    try:
+        for r in plan.runs:
+            row = running.describe(plan.study, r)
+            what = ["%s=%s" % (k, v) for k, v in row.items() if k not in ("run", "number", "status") and v is not None]
+            print(r.id, "open    " if r.id in open_runs else "finished", *what)
+        sys.stdout.flush()
+    except BrokenPipeError:  # `| head` has read enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return 0
 
 

@@ -82,7 +82,7 @@ def _steps(simulation: _core.Simulation, study: Study, run: RunSpec, row: Row, d
 def describe(study: Study, run: RunSpec) -> Row:
     """What a run is, before it has run."""
     motion = study.motions[run.motion]
-    row: Row = {"run": run.id, "number": run.number, "status": "", "scene": study.scenes[run.scene].stem}
+    row: Row = {"run": run.id, "number": run.number, "status": "", "scene": study.labels[run.scene]}
     row |= {a.name: a.points[k].value for a, k in zip(study.axes, run.at)}
     row |= {"motion": "random" if study.hands else motion.name.rsplit("/", 1)[-1], "rate": run.rate or None,
             "seed": run.seed}

@@ -112,6 +112,14 @@ class Study:
     plots: tuple[Plot, ...] = ()
     scene_places: tuple[Place, ...] = ()
 
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """A short name for each scene: the file's, or the folder's of a case; both where several have the same."""
+        names = [s.parent.name if s.stem == "case" else s.stem for s in self.scenes]
+        return tuple(
+            n if names.count(n) == 1 else "%s/%s" % (s.parent.name, s.stem) for n, s in zip(names, self.scenes)
+        )
+
 
 @dataclasses.dataclass(frozen=True)
 class RunSpec:
