@@ -81,7 +81,7 @@ void add_scene_commands(Options& c) {
 void add_texts(Options& c) {
   auto* command =
       c.app.add_subcommand("texts", "what persons read of scenes and curricula, as JSON, for those who translate it");
-  command->add_option("file", c.scenes, "scenes and curricula")->required();
+  insula::add_scene(*command, "file", c.scenes, "scenes and curricula")->required();
   command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_texts(x, c.scenes); }; });
 }
 
@@ -128,7 +128,7 @@ void add_doctor(Options& c) {
 void add_run(Options& c) {
   auto& o = c.run;
   auto* command = c.app.add_subcommand("run", "a scene from start to end without devices or viewer, with a report");
-  command->add_option("scene", o.scene, "scene file")->required();
+  insula::add_scene(*command, "scene", o.scene, "file or name of a scene")->required();
   insula::add_quantity<Duration>(*command, "--duration", o.duration,
                                  seconds("simulated time (default: the motion and one second more)"));
   add_motion(*command, o.motion);
@@ -147,7 +147,7 @@ void add_run(Options& c) {
 void add_engine(Options& c) {
   auto& o = c.engine;
   auto* command = c.app.add_subcommand("engine", "the engine process of a session, over the bus");
-  command->add_option("scene", o.scene, "scene file")->required();
+  insula::add_scene(*command, "scene", o.scene, "file or name of a scene")->required();
   command->add_option("--motion", o.motion, "what simulated hands follow")->capture_default_str();
   command->add_option("--bundle-dir", o.bundle_root, "folder for the viewer's scene bundles");
   insula::add_quantity<Duration>(*command, "--duration", o.duration,
@@ -199,7 +199,7 @@ void add_viewer_options(CLI::App& command, Options& c) {
 void add_play(Options& c) {
   auto& o = c.play;
   auto* command = c.app.add_subcommand("play", "engine, haptic server and viewer together, until Ctrl-C");
-  command->add_option("scene", o.scene, "scene file (default: the first training exercise)");
+  insula::add_scene(*command, "scene", o.scene, "file or name of a scene (default: the first training exercise)");
   insula::add_room_options(*command, o.room);
   command->add_option("--motion", o.motion, "what simulated hands follow: a motion of the scene, a CSV file, or none");
   command->add_option(
@@ -245,7 +245,7 @@ void add_play(Options& c) {
 void add_view(Options& c) {
   auto* command = c.app.add_subcommand(
       "view", "a scene to be looked at: what is in it by name, with units and sizes; time stands still");
-  command->add_option("scene", c.play.scene, "scene file")->required();
+  insula::add_scene(*command, "scene", c.play.scene, "file or name of a scene")->required();
   command->add_flag("--list", c.list_only, "print what is in it and end");
   add_viewer_options(*command, c);
   command->callback([&c] {

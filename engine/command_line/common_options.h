@@ -12,8 +12,10 @@
 #include "core/base/input_error.h"
 #include "core/params/option.h"
 #include "engine/command_line/record_store_options.h"
+#include "engine/live/project_folder.h"
 #include "engine/live/step_rate.h"
 #include "engine/session/session_format.h"
+#include "engine/sharing/scene_names.h"
 
 namespace insula {
 
@@ -23,6 +25,22 @@ inline auto at_least(int least) {
 }
 
 inline QuantityOption seconds(std::string doc) { return {.bare = "s", .min = "0 s", .doc = std::move(doc)}; }
+
+/// An option that takes a scene: its file, or the name of one of the project or of an added case.
+template <class Value>
+CLI::Option* add_scene(CLI::App& command, const std::string& name, Value& value, const std::string& doc) {
+  const auto file_of = [](std::string& text) {
+    try {
+      std::vector<NamedScene> scenes = shipped_scenes(project_folder());
+      for (NamedScene& added : added_scenes({})) scenes.push_back(std::move(added));
+      text = scene_called(text, scenes).string();
+      return std::string();
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+  };
+  return command.add_option(name, value, doc)->transform(CLI::Validator(file_of, ""));
+}
 
 inline void add_seed(CLI::App& command, std::uint64_t& seed) {
   command.add_option("--seed", seed, "what complications are drawn from; 0: the scene's own seed");

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/command_line/run_command_line.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <iostream>
 #include <string>
 
+#include "core/base/diagnostic.h"
 #include "core/params/option.h"
 #include "core/registry/registry.h"
 #include "engine/command_line/load_plugins.h"
@@ -21,6 +24,20 @@ std::string version_text() {
          abi_string();
 }
 
+/// Error text if the word in the command's place is no command; empty otherwise.
+std::string unknown_command(const CLI::App& app, const std::vector<std::string>& words) {
+  const auto takes_value = [](const std::string& word) { return word == "--plugin-path"; };
+  auto word = words.begin();
+  while (word != words.end() && word->starts_with('-')) word += takes_value(*word) && word + 1 != words.end() ? 2 : 1;
+  if (word == words.end()) return "";
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), *word) != names.end()) return "";
+  const std::string near = nearest_name(*word, names);
+  return near.empty() ? fmt::format("no command \"{}\"; there are {}", *word, fmt::join(names, ", "))
+                      : fmt::format("no command \"{}\"; did you mean \"{}\"?", *word, near);
+}
+
 }  // namespace
 
 CommandLine::CommandLine(const std::string& description, const std::string& name) : app(description, name) {
@@ -33,6 +50,10 @@ CommandLine::CommandLine(const std::string& description, const std::string& name
 int run_command_line(CommandLine& line, int argc, char** argv) {
   try {
     std::vector<std::string> words = command_words(argc, argv);
+    if (const std::string error = unknown_command(line.app, words); !error.empty()) {
+      std::cerr << error << "\nRun with --help for more information.\n";
+      return 2;
+    }
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     line.app.parse(std::move(words));
   } catch (const CLI::ParseError& e) {

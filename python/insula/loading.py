@@ -55,8 +55,11 @@ def load(
         first part of a key is the id of a component, or ID.ELEMENT for its only child of that element; "$" begins the
         name of a variable.
 
-    Raises SceneError with all problems of the scene, and InputError if a plugin cannot be loaded.
+    Raises SceneError with all problems of the scene, InputError if a plugin cannot be loaded, and FileNotFoundError
+    with the nearest name if no shipped scene is called so.
     """
+    if time_step is not None and not time_step > 0:
+        raise ValueError("time_step: above 0 s")
     text = ""
     if isinstance(scene, str) and scene.lstrip().startswith("<"):
         text, file = scene, os.fspath(path or "scene.xml")

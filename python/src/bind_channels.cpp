@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Channels: the numbers that components publish each step. All of them lie in one block of memory.
+#include <fmt/ranges.h>
+
 #include "python/src/bind.h"
 
 namespace insula::python {
@@ -86,7 +88,10 @@ void bind_channels(nb::module_& m, RunClass& run) {
           "View of all numbers. Its memory stays the same for the life of the simulation, and steps write into it.")
       .def_prop_ro(
           "infos", [](const ChannelsOf& c) { return infos(nb::cast<Run&>(c.owner)); },
-          "What each channel is, in the order of the numbers.");
+          "What each channel is, in the order of the numbers.")
+      .def("__repr__", [](const ChannelsOf& c) {
+        return fmt::format("<Channels: {}>", fmt::join(c.simulation().channels().ids(), ", "));
+      });
   run.def_prop_ro(
       "channels", [](nb::handle self) { return ChannelsOf{nb::borrow(self)}; }, "The channels of the scene.");
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the exercise stands: goals, faults, clocks, measures, metrics.
+#include <fmt/format.h>
+
 #include "python/src/bind.h"
 
 namespace insula::python {
@@ -20,6 +22,13 @@ const char* name_of(ExerciseState state) {
   return "";
 }
 
+/// As Python prints it.
+template <class Value>
+std::string described(const char* type, const std::string& name, const Value& v) {
+  return v.known ? fmt::format("<{} {}: {:.6g}{}{}>", type, name, v.value, v.unit.empty() ? "" : " ", v.unit)
+                 : fmt::format("<{} {}: not known>", type, name);
+}
+
 void bind_log(nb::module_& m) {
   nb::class_<GoalState>(m, "Goal", "A goal of the exercise.")
       .def_ro("id", &GoalState::id, "Its id.")
@@ -36,7 +45,11 @@ void bind_log(nb::module_& m) {
       .def_ro("id", &TimerState::id, "Its id.")
       .def_ro("elapsed", &TimerState::elapsed, "s.")
       .def_ro("limit", &TimerState::limit, "s; 0: none.")
-      .def_ro("running", &TimerState::running, "Whether it runs.");
+      .def_ro("running", &TimerState::running, "Whether it runs.")
+      .def("__repr__", [](const TimerState& t) { return fmt::format("<Timer {}, {:.1f} s>", t.id, t.elapsed); });
+}
+
+void bind_results(nb::module_& m) {
   nb::class_<MeasureState>(m, "Measure", "A result that the exercise measures.")
       .def_ro("id", &MeasureState::id, "Its id.")
       .def_ro("text", &MeasureState::text, "Text for the trainee.")
@@ -48,7 +61,8 @@ void bind_log(nb::module_& m) {
           },
           "In `unit`; None: not known.")
       .def_ro("unit", &MeasureState::unit, "Unit of the value.")
-      .def_ro("good", &MeasureState::good, "1 good, 0 neutral, -1 bad.");
+      .def_ro("good", &MeasureState::good, "1 good, 0 neutral, -1 bad.")
+      .def("__repr__", [](const MeasureState& s) { return described("Measure", s.id, s); });
   nb::class_<MetricValue>(m, "Metric", "A figure on how the hands work.")
       .def_ro("id", &MetricValue::id, "Its id.")
       .def_ro("text", &MetricValue::text, "Its meaning.")
@@ -62,13 +76,17 @@ void bind_log(nb::module_& m) {
             return v.value;
           },
           "In `unit`; None: not known.")
-      .def_ro("unit", &MetricValue::unit, "Unit of the value.");
+      .def_ro("unit", &MetricValue::unit, "Unit of the value.")
+      .def("__repr__", [](const MetricValue& v) {
+        return described("Metric", v.hand == both_hands ? v.id : v.id + " " + std::string(hand_name(v.hand)), v);
+      });
 }
 
 }  // namespace
 
 void bind_exercise(nb::module_& m, RunClass& run) {
   bind_log(m);
+  bind_results(m);
   run.def_prop_ro(
          "has_exercise", [](const Run& r) { return r.simulation().exercise() != nullptr; },
          "Whether the scene has an exercise.")

@@ -36,6 +36,10 @@ Array<float> data_of(const DrawableOf& d) {
   return out;
 }
 
+std::string id_of(const DrawableOf& d) {
+  return d.entry->component->id + "." + std::string(d.entry->drawable->spec().name);
+}
+
 void bind_parts(nb::module_& m) {
   nb::class_<SurfaceOf>(m, "Surface", "A triangle mesh that follows its body.")
       .def_prop_ro(
@@ -65,14 +69,10 @@ void bind_parts(nb::module_& m) {
           "vertices", [](const PartOf& p) { return rows_of(p.part->mesh.vertices); }, as_array, "Vertices, m.")
       .def_prop_ro(
           "triangles", [](const PartOf& p) { return rows_of(p.part->mesh.triangles, p.owner); }, as_array,
-          "View of its triangles.");
+          "View of its triangles.")
+      .def("__repr__", [](const PartOf& p) { return "<Part " + p.part->name + ">"; });
   nb::class_<DrawableOf>(m, "Drawable", "Points, lines, a patch, a plane, a label or links of a component.")
-      .def_prop_ro(
-          "id",
-          [](const DrawableOf& d) {
-            return d.entry->component->id + "." + std::string(d.entry->drawable->spec().name);
-          },
-          "\"component.drawable\".")
+      .def_prop_ro("id", &id_of, "\"component.drawable\".")
       .def_prop_ro(
           "kind", [](const DrawableOf& d) { return std::string(drawable_kind_name(d.entry->drawable->kind())); },
           "\"points\", \"polylines\", \"patch\", \"plane\", \"label\" or \"links\".")
@@ -84,7 +84,8 @@ void bind_parts(nb::module_& m) {
       .def_prop_ro(
           "radius", [](const DrawableOf& d) { return d.entry->drawable->radius(); }, "Of points and lines, m.")
       .def_prop_ro("data", &data_of, as_array,
-                   "One row of numbers for each element, in the layout of lcm_types/render_frame.lcm.");
+                   "One row of numbers for each element, in the layout of lcm_types/render_frame.lcm.")
+      .def("__repr__", [](const DrawableOf& d) { return "<Drawable " + id_of(d) + ">"; });
 }
 
 }  // namespace

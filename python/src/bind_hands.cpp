@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Both hands: poses that the program sets, scripted motions, and what the hands feel.
+#include <fmt/format.h>
+
 #include "core/base/input_error.h"
 #include "engine/live/live_engine.h"
 #include "python/src/bind.h"
@@ -66,7 +68,8 @@ void bind_motion(nb::module_& m) {
             for (const MotionCommand& c : motion.commands()) out.emplace_back(c.time_s, c.verb, c.argument);
             return out;
           },
-          "Time (s), verb and argument of each command.");
+          "Time (s), verb and argument of each command.")
+      .def("__repr__", [](const Motion& motion) { return fmt::format("<Motion of {:.2f} s>", motion.duration()); });
 }
 
 void bind_following(RunClass& run) {

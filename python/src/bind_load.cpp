@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loading, and what a scene says of itself.
+#include "core/base/input_error.h"
+#include "engine/sharing/scene_names.h"
 #include "python/src/bind.h"
 
 namespace insula::python {
@@ -15,9 +17,32 @@ std::vector<SceneEdit> edits_of(const std::vector<EditTuple>& tuples) {
   return out;
 }
 
+void bind_scene_names(nb::module_& m) {
+  m.def(
+      "shipped_scenes",
+      [](const std::string& folder) {
+        std::vector<std::pair<std::string, std::string>> out;
+        for (const NamedScene& s : shipped_scenes(folder)) out.emplace_back(s.name, s.file.string());
+        return out;
+      },
+      "folder"_a, "Name and file of each scene in a folder's scenes/. insula.scenes() calls it.");
+  m.def(
+      "scene_called",
+      [](const std::string& given, const std::string& folder) {
+        try {
+          return scene_called(given, shipped_scenes(folder)).string();
+        } catch (const InputError& e) {
+          PyErr_SetString(PyExc_FileNotFoundError, e.what());
+          throw nb::python_error();
+        }
+      },
+      "given"_a, "folder"_a, "The file of a scene, given itself or by its name. Raises FileNotFoundError.");
+}
+
 }  // namespace
 
 void bind_load(nb::module_& m, RunClass& run) {
+  bind_scene_names(m);
   m.def(
       "load",
       [](const std::string& text, const std::string& file, const std::vector<std::string>& plugins, int threads,

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The constraint problem of the last step as a value: delta = W lambda + delta_free and the laws of its rows.
+#include <fmt/format.h>
+
 #include "core/constraint/solve.h"
 #include "python/src/bind.h"
 
@@ -134,7 +136,10 @@ void bind_tool_terms(nb::module_& m) {
       .def_prop_ro(
           "device", [](const ToolTerms& t) { return tuple_of(t.device); }, "Pose of the device.")
       .def_prop_ro(
-          "free", [](const ToolTerms& t) { return tuple_of(t.free); }, "Pose after the free motion.");
+          "free", [](const ToolTerms& t) { return tuple_of(t.free); }, "Pose after the free motion.")
+      .def("__repr__", [](const ToolTerms& t) {
+        return fmt::format("<ToolTerms of the {} hand>", t.hand == 0 ? "left" : "right");
+      });
 }
 
 }  // namespace
@@ -168,7 +173,10 @@ void bind_problem(nb::module_& m, RunClass& run) {
           "tools", [](const ProblemValue& p) { return p.problem.tools; }, "The tools in the hands.")
       .def("solve", &solve_again, "delta_free"_a.none() = nb::none(), "max_sweeps"_a = 200, "tolerance"_a = 1e-9,
            "max_newton"_a = 0,
-           "Solves the problem, with other free violations if they are given: lambda (N) and delta (m).");
+           "Solves the problem, with other free violations if they are given: lambda (N) and delta (m).")
+      .def("__repr__", [](const ProblemValue& p) {
+        return fmt::format("<ConstraintProblem of {} rows in {} blocks>", p.problem.rows, p.problem.blocks.size());
+      });
   run.def_prop_ro("problem", &problem_of, "The constraint problem of the last step, with its solution.");
 }
 

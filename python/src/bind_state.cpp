@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Saved states.
+#include <fmt/format.h>
+
 #include "python/src/bind.h"
 
 namespace insula::python {
@@ -22,6 +24,7 @@ void bind_state(nb::module_& m, RunClass& run) {
             return State::of_bytes({b.c_str(), b.size()});
           },
           "data"_a, "The state of these bytes. Raises InputError if they are none.")
+      .def("__repr__", [](const State& s) { return fmt::format("<State at {:.6f} s, {:016x}>", s.time_s, s.hash); })
       .def("__getstate__",
            [](const State& s) {
              const std::string bytes = s.bytes();

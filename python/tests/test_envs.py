@@ -32,6 +32,8 @@ def test_the_names_of_the_manual_are_registered():
     assert set(FOUR) < set(NAMES) and set(NAMES) <= set(gymnasium.registry)
     with pytest.raises(KeyError):
         envs.ExerciseEnv("Clippin")
+    with pytest.raises(ValueError, match="middle"):
+        envs.ExerciseEnv("Clipping", hands=("middle",))
 
 
 def test_parallel_api():

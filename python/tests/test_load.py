@@ -29,6 +29,26 @@ def test_names_of_shipped_scenes():
             insula.load(wrong)
 
 
+@pytest.mark.parametrize("step", [0, -1, float("nan")])
+def test_a_step_is_longer_than_nothing(step):
+    with pytest.raises(ValueError, match="above 0"):
+        load_block(time_step=step)
+
+
+def test_everything_prints_what_it_is():
+    simulation = insula.load("sylvian_fissure")
+    simulation.step()
+    tool = next(b for b in simulation.bodies if b.element == "dissector")
+    seen = [simulation, simulation.channels, simulation.problem, simulation.motion("steady"), simulation.save(),
+            *simulation.channels.infos[:1], *simulation.problem.blocks[:1], *simulation.problem.tools,
+            *simulation.bodies, *simulation.surfaces, *simulation.tool_parts(tool.id), *simulation.drawables,
+            *simulation.goals, *simulation.faults, *simulation.timers, *simulation.measures, *simulation.metrics()]
+    assert len({type(s) for s in seen}) >= 16
+    assert not [repr(s) for s in seen if " object at " in repr(s)]
+    assert "<Metric strands_torn: 0>" in repr(simulation.metrics())
+    assert "arachnoid.standing" in repr(simulation.channels)
+
+
 def test_a_text_finds_its_files_beside_its_path():
     folder = insula.shipped.folder() / "meshes/examples"
     text = """<scene><soft_body id="b" mesh="block.msh" mesh_unit="mm"><corotational_fem/></soft_body></scene>"""

@@ -185,6 +185,17 @@ def test_soundness_finds_an_inverted_element():
     assert seen["inverted"] == len(elements) and not seen["sound"] and sound.inverted_ever == len(elements)
 
 
+def test_a_hand_may_be_pulled_by_the_vessel_that_it_clips():
+    simulation = insula.load("clipping")
+    simulation.follow(simulation.motion("steady"))
+    sound = Soundness(simulation)
+    seen = []
+    for time in (4.0, 5.5, 7.0):  # the blades are open; shut in the applier; shut and let go
+        simulation.step(round((time - simulation.time) / simulation.time_step))
+        seen.append(sound.gripping())
+    assert seen == [set(), {"applier"}, set()]
+
+
 def test_time_left_follows_the_pace():
     out = io.StringIO()
     progress = Progress(100, 20, out=out)

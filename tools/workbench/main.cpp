@@ -30,7 +30,7 @@ struct Options : insula::CommandLine {
 void add_check(Options& c) {
   auto* check =
       c.app.add_subcommand("check", "read scenes and curricula and report everything that is wrong with them");
-  check->add_option("file", c.files, "scene and curriculum files")->required();
+  insula::add_scene(*check, "file", c.files, "files of scenes and curricula, or names of scenes")->required();
   check->add_flag("--settle", c.settle,
                   "let scenes settle that do so first: slower, and tells what a step of them costs");
   check->add_flag("--json", c.check_json, "all problems as JSON, for editors; costs are left out");
@@ -112,7 +112,7 @@ void choose_bench(Options& c) {
 void add_bench(Options& c) {
   auto& o = c.bench;
   auto* command = c.app.add_subcommand("bench", "where the time of a step goes");
-  auto* scene = command->add_option("scene", o.scene, "scene file");
+  auto* scene = insula::add_scene(*command, "scene", o.scene, "file or name of a scene");
   auto* scaling =
       command->add_flag("--scaling", c.measure_scaling,
                         "without a scene: the stages against nodes, rows and fibres, with their slopes; one thread "

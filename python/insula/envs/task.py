@@ -48,6 +48,8 @@ class Task:
     """A simulation of an exercise with one or two hands that agents move, for Gymnasium and PettingZoo alike."""
 
     def __init__(self, exercise: str, hands: tuple[str, ...], steps: int, scene: str | None, helper: str | None):
+        if not hands or set(hands) - {"left", "right"}:
+            raise ValueError('hands: "left", "right" or both, not %s' % (hands,))
         self.exercise: Exercise = EXERCISES[exercise]
         self.simulation = insula.load(scene or self.exercise.scene)
         self.hands = {name: Hand(name) for name in hands}

@@ -13,6 +13,7 @@ EVERY = 5  # steps between two looks at the elements
 COLLAPSED = 0.01  # of the size at rest
 DEEP = 0.6e-3  # m; shapes of tools are rounded by 0.2 mm
 ASTRAY = 1e-3  # m
+GRIP = 0.05  # of a contact of a shut clip, N
 COLUMNS = ("sound", "inverted_ever", "inverted", "volume", "area", "depth", "astray")
 UNITS = {"depth": "m", "astray": "m"}
 
@@ -60,11 +61,22 @@ class Soundness:
         touching = contacts[rigid[contacts["body_a"]] | rigid[contacts["body_b"]]] if len(contacts) else contacts
         return max(0.0, -float(touching["gap"].min())) if len(touching) else 0.0
 
+    def gripping(self) -> set[str]:
+        """Tools whose clip is shut on a vessel."""
+        contacts, bodies = self.simulation.contacts, self.simulation.bodies
+        is_clip = np.array([b.element == "clip" for b in bodies])
+        is_wall = np.array([b.element == "shell_body" for b in bodies])
+        a, b = contacts["body_a"], contacts["body_b"]
+        gripped = contacts[((is_clip[a] & is_wall[b]) | (is_wall[a] & is_clip[b])) & (contacts["normal_force"] > GRIP)]
+        welded = {k.owner for k in self.simulation.problem.blocks if k.role == "weld"}
+        return welded if len(gripped) >= 2 else set()
+
     def astray(self) -> float:
-        """Largest distance of a tool from its hand, m."""
+        """Largest distance of a tool from its hand, m. A tool that holds a vessel in a shut clip is pulled by it."""
         s, found = self.simulation, [0.0]
+        gripping = self.gripping()
         for hand in ("left", "right"):
-            if s.tool(hand) is not None:
+            if s.tool(hand) is not None and s.tool(hand) not in gripping:
                 found.append(float(np.linalg.norm(np.subtract(s.hand_pose(hand)[0], s.tip_pose(hand)[0]))))
         return max(found)
 
