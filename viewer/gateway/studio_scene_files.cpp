@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "viewer/gateway/studio_scene_files.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <chrono>
 
 #include "core/base/case_name.h"
 #include "core/base/input_error.h"
+#include "core/base/text.h"
 #include "core/model/formats/file_bytes.h"
 #include "viewer/gateway/json_input.h"
 #include "viewer/gateway/replace_file.h"
@@ -135,6 +138,14 @@ std::optional<StudioSceneFiles::Text> StudioSceneFiles::read(const std::string& 
   return out;
 }
 
+std::string StudioSceneFiles::Text::revision() const {
+  Fnv1a hash;
+  hash.add(text);
+  hash.add(draft ? "draft" : "");
+  if (draft) hash.add(*draft);
+  return fmt::format("{:016x}", hash.value());
+}
+
 std::optional<std::string> StudioSceneFiles::version(const std::string& name, const std::string& file,
                                                      int number) const {
   std::error_code error;
@@ -166,7 +177,9 @@ bool StudioSceneFiles::keep_draft(const std::string& name, const std::string& fi
 std::optional<fs::path> StudioSceneFiles::for_check(const std::string& name, const std::string& file,
                                                     const std::string& text) const {
   if (!holds(name, file)) return std::nullopt;
-  const fs::path out = root_ / ".check" / name;
+  Fnv1a hash;
+  hash.add(file);
+  const fs::path out = root_ / ".check" / name / fmt::format("{:016x}", hash.value());
   try {
     fs::remove_all(out);
     link_files(folder(name), out);

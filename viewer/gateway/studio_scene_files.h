@@ -28,6 +28,9 @@ class StudioSceneFiles {
     std::string text;
     std::optional<std::string> draft;  ///< was typed and has errors; missing: nothing else was typed
     nlohmann::json versions;           ///< [{number, time_ms}], the newest first
+
+    /// Another one for other texts: a page says with it what it has seen.
+    std::string revision() const;
   };
   /// Nothing if there is no such file in the copy.
   std::optional<Text> read(const std::string& name, const std::string& file) const;

@@ -18,6 +18,7 @@ using Json = nlohmann::json;
 
 constexpr auto short_question = std::chrono::seconds(60), long_question = std::chrono::seconds(300);
 constexpr const char* no_scene = "there is no such scene";
+constexpr const char* no_file = "there is no such file in this scene";
 constexpr const char* scene_too_large = "this scene is too large: 200 kB are taken";
 
 std::string player_key(const std::string& name) { return "scene " + name; }
@@ -97,13 +98,15 @@ ApiAnswer StudioScenes::file(const std::string& name, std::string_view query) co
     return text ? answer_with(Json{{"text", *text}}) : refusal(404, "there is no such version");
   }
   const auto text = files_.read(name, file);
-  if (!text) return refusal(404, "there is no such file in this scene");
-  return answer_with(
-      Json{{"text", text->text}, {"draft", text->draft ? Json(*text->draft) : Json()}, {"versions", text->versions}});
+  if (!text) return refusal(404, no_file);
+  return answer_with(Json{{"text", text->text},
+                          {"draft", text->draft ? Json(*text->draft) : Json()},
+                          {"versions", text->versions},
+                          {"revision", text->revision()}});
 }
 
-ApiAnswer StudioScenes::checked(const std::string& name) const {
-  const auto it = checks_.find(name);
+ApiAnswer StudioScenes::checked(const std::string& name, const std::string& file) const {
+  const auto it = checks_.find({name, file});
   if (it == checks_.end()) return answer_with(Json{{"state", ""}, {"number", 0}, {"error", ""}});
   const auto& [number, folder, question] = it->second;
   if (!question->ended()) return answer_with(Json{{"state", "running"}, {"number", number}, {"error", ""}});
@@ -146,33 +149,40 @@ ApiAnswer StudioScenes::open_source(const std::string& source) {
   return refusal(404, no_scene);
 }
 
-ApiAnswer StudioScenes::check(const std::string& name, const Json& body) {
-  const std::string file = text_of(body, "file"), text = text_of(body, "text"), scene = text_of(body, "scene");
+ApiAnswer StudioScenes::edit(std::string_view path, const std::string& name, const Json& body) {
+  const std::string file = text_of(body, "file"), text = text_of(body, "text"), seen = text_of(body, "revision");
+  if (text.size() > most_text_bytes) return refusal(413, scene_too_large);
+  const auto before = files_.read(name, file);
+  if (!before) return refusal(404, no_file);
+  if (seen.empty()) return refusal(428, "the revision of the file is missing");
+  if (seen != before->revision()) return refusal(412, "this file was changed in another window");
+  return path == "scene_check" ? check(name, file, body) : write(name, file, text);
+}
+
+ApiAnswer StudioScenes::check(const std::string& name, const std::string& file, const Json& body) {
+  const std::string text = text_of(body, "text"), scene = text_of(body, "scene");
   const std::vector<std::string> scenes = files_.scenes(name);
   if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) return refusal(404, no_scene);
-  checks_.erase(name);  // its program ends with it
+  checks_.erase({name, file});  // its program ends with it
   const auto folder = files_.for_check(name, file, text);
-  if (!folder) return refusal(404, "there is no such file in this scene");
+  if (!folder) return refusal(404, no_file);
   if (const auto before = files_.read(name, file); before && before->text != text) files_.keep_draft(name, file, text);
-  Check& now = checks_[name];
+  Check& now = checks_[{name, file}];
   now = {
       ++check_number_, *folder,
       std::make_unique<StudioQuestion>(
           std::vector<std::string>{program_.string(), "check", "--json", (*folder / scene).string()}, short_question)};
-  return answer_with(Json{{"number", now.number}});
+  return answer_with(Json{{"number", now.number}, {"revision", files_.read(name, file)->revision()}});
 }
 
-ApiAnswer StudioScenes::write(const std::string& name, const Json& body) {
-  const std::string file = text_of(body, "file");
-  if (!files_.write(name, file, text_of(body, "text"))) return refusal(404, "there is no such file in this scene");
-  return answer_with(Json{{"versions", files_.read(name, file)->versions}});
+ApiAnswer StudioScenes::write(const std::string& name, const std::string& file, const std::string& text) {
+  if (!files_.write(name, file, text)) return refusal(404, no_file);
+  const auto now = files_.read(name, file);
+  return answer_with(Json{{"versions", now->versions}, {"revision", now->revision()}});
 }
 
 ApiAnswer StudioScenes::act(std::string_view path, const std::string& name, const Json& body) {
-  if (path == "scene_check" || path == "scene_write") {
-    if (text_of(body, "text").size() > most_text_bytes) return refusal(413, scene_too_large);
-    return path == "scene_check" ? check(name, body) : write(name, body);
-  }
+  if (path == "scene_check" || path == "scene_write") return edit(path, name, body);
   if (path == "scene_look") {
     const std::string scene = text_of(body, "scene");
     const std::vector<std::string> scenes = files_.scenes(name);
@@ -183,7 +193,7 @@ ApiAnswer StudioScenes::act(std::string_view path, const std::string& name, cons
   if (path == "scene_leave" || path == "scene_remove") player_.end(player_key(name));
   if (path == "scene_leave") return shown(name);
   if (path != "scene_remove") return refusal(404, "not found");
-  checks_.erase(name);
+  std::erase_if(checks_, [&](const auto& check) { return check.first.first == name; });
   files_.remove(name);
   return {200, "{}\n"};
 }
@@ -197,7 +207,7 @@ ApiAnswer StudioScenes::get(std::string_view path, std::string_view query) {
     if (path == "scene_elements") return asked(elements_, {"list", "--json"}, "elements", std::chrono::hours(24));
     if (path == "scene") return shown(name);
     if (path == "scene_file" || path == "scene_version") return file(name, query);
-    if (path == "scene_checked") return checked(name);
+    if (path == "scene_checked") return checked(name, query_value(query, "file"));
   } catch (const InputError& e) {
     return refusal(500, e.what());
   }
@@ -223,7 +233,7 @@ void StudioScenes::look() {
   for (auto it = copies_.begin(); it != copies_.end();)
     if (it->second->look() && it->second->succeeded()) it = copies_.erase(it);
     else ++it;
-  for (auto& [name, check] : checks_) check.asked->look();
+  for (auto& [of, check] : checks_) check.asked->look();
   for (auto* question : {&sources_, &elements_})
     if (*question) (*question)->look();
 }

@@ -29,13 +29,14 @@ class StudioScenes {
   ///   scenes                        {scenes: [{name, state, error}], most_bytes}
   ///   scene_sources, scene_elements {state, error, sources | elements}; asks a program first, so ask again
   ///   scene?name=                   {name, state: "copying" | "ready" | "failed", error, scenes, files, meshes, look}
-  ///   scene_file?name=&file=        {text, draft, versions}
+  ///   scene_file?name=&file=        {text, draft, versions, revision}
   ///   scene_version?name=&file=&number=   {text}
-  ///   scene_checked?name=           {state: "" | "running" | "done" | "failed", number, error, ok, problems}
+  ///   scene_checked?name=&file=     {state: "" | "running" | "done" | "failed", number, error, ok, problems}
   ApiAnswer get(std::string_view path, std::string_view query);
   ///   scene_new {name}: a scene from nothing, by `insula cases new`. scene_open {source}; scene_check {name, scene,
-  ///   file, text} gives {number}; scene_write {name, file, text} gives {versions}; scene_look {name, scene} and
-  ///   scene_leave {name}: the scene; scene_remove {name}
+  ///   file, text, revision} gives {number, revision}; scene_write {name, file, text, revision} gives {versions,
+  ///   revision}; scene_look {name, scene} and scene_leave {name}: the scene; scene_remove {name}. revision: that of
+  ///   the file when the page last heard of it. If the file was changed since, nothing is done (412).
   ApiAnswer post(std::string_view path, const nlohmann::json& body);
   /// Copies a scene, or the scenes in the folder of a built case. file: what the copy is named after.
   ApiAnswer open(const std::filesystem::path& from, const std::string& file);
@@ -53,11 +54,12 @@ class StudioScenes {
   ApiAnswer shown(const std::string& name) const;
   ApiAnswer list() const;
   ApiAnswer file(const std::string& name, std::string_view query) const;
-  ApiAnswer checked(const std::string& name) const;
+  ApiAnswer checked(const std::string& name, const std::string& file) const;
   ApiAnswer begin(const std::string& name);
   ApiAnswer open_source(const std::string& source);
-  ApiAnswer check(const std::string& name, const nlohmann::json& body);
-  ApiAnswer write(const std::string& name, const nlohmann::json& body);
+  ApiAnswer edit(std::string_view path, const std::string& name, const nlohmann::json& body);
+  ApiAnswer check(const std::string& name, const std::string& file, const nlohmann::json& body);
+  ApiAnswer write(const std::string& name, const std::string& file, const std::string& text);
   ApiAnswer act(std::string_view path, const std::string& name, const nlohmann::json& body);
   nlohmann::json sources() const;
 
@@ -66,7 +68,7 @@ class StudioScenes {
   StudioPlayer& player_;
   std::unique_ptr<StudioQuestion> sources_, elements_;
   std::map<std::string, std::unique_ptr<StudioQuestion>> copies_;  ///< by name: those that run or have failed
-  std::map<std::string, Check> checks_;                            ///< by name: the last one each
+  std::map<std::pair<std::string, std::string>, Check> checks_;    ///< by name and file: the last one each
   int check_number_ = 0;
 };
 

@@ -34,7 +34,7 @@ case "$1 $2" in
   mkdir -p "$3/meshes" && echo mesh > "$3/meshes/block.msh" && echo '<scene/>' > "$3/$(basename "$3").xml"
   echo "{\"scenes\": [\"$(basename "$3").xml\"]}" > "$3/insula_case.json";;
 "check --json")
-  [ -e "$here/slow" ] && exec sleep 100
+  [ -e "$here/slow" ] && touch "$here/sleeps" && exec sleep 100
   file=$(grep -l wrong "$(dirname "$3")"/*.xml)
   [ -z "$file" ] && echo '{"ok": true, "problems": []}' && exit 0
   echo "{\"ok\": false, \"problems\": [{\"file\": \"$file\", \"line\": 2, \"text\": \"see $file:2\"}]}"
@@ -59,6 +59,14 @@ class StudioScenesTest : public ::testing::Test {
     return json::parse(scenes_.get(path, query).json);
   }
   ApiAnswer post(const std::string& path, json body) { return scenes_.post(path, body); }
+  /// scene_write or scene_check of a page that shows the present text, unless `body` has another revision.
+  ApiAnswer edit(const std::string& path, json body) {
+    if (!body.contains("revision"))
+      body["revision"] =
+          get("scene_file", "name=" + body["name"].get<std::string>() + "&file=" + body["file"].get<std::string>())
+              .value("revision", "none");
+    return post(path, body);
+  }
   /// The answer once `over` says so.
   template <class Over>
   json wait(const std::string& path, const std::string& query, Over over) {
@@ -84,8 +92,8 @@ class StudioScenesTest : public ::testing::Test {
   }
   json checked(const std::string& name, const std::string& file, const std::string& text) {
     const json asked = json::parse(
-        post("scene_check", {{"name", name}, {"scene", "scenes/first.xml"}, {"file", file}, {"text", text}}).json);
-    return wait("scene_checked", "name=" + name,
+        edit("scene_check", {{"name", name}, {"scene", "scenes/first.xml"}, {"file", file}, {"text", text}}).json);
+    return wait("scene_checked", "name=" + name + "&file=" + file,
                 [&](const json& j) { return j["state"] != "running" && j["number"] == asked["number"]; });
   }
   std::string on_disk(const fs::path& file) {
@@ -132,7 +140,7 @@ TEST_F(StudioScenesTest, OnlyScenesOfTheListAreCopied) {
 TEST_F(StudioScenesTest, WritingKeepsWhatWasThereAndLeavesTheShippedFile) {
   const std::string name = opened(), file = "scenes/first.xml";
   for (const char* text : {"<scene/>", "<scene a=\"ä\"/>\n", "<scene a=\"ä\"/>\n"})
-    EXPECT_EQ(post("scene_write", {{"name", name}, {"file", file}, {"text", text}}).status, 200);
+    EXPECT_EQ(edit("scene_write", {{"name", name}, {"file", file}, {"text", text}}).status, 200);
   EXPECT_EQ(on_disk(data_ / "scenes/first/scenes/first.xml"), "<scene a=\"ä\"/>\n");
   EXPECT_EQ(on_disk(folder_.path() / "bin/shipped/first.xml"), shipped);
   const json now = get("scene_file", "name=first&file=scenes/first.xml");
@@ -151,9 +159,9 @@ TEST_F(StudioScenesTest, OnlyTheXmlFilesOfACopyAreReadAndWritten) {
   for (const std::string file : {"../../outside.xml", "/etc/passwd", "scenes/link.xml", "scenes/tool.urdf", "",
                                  "scenes", "insula_case.json", "scenes/new.xml", "scenes/../scenes/first.xml"}) {
     EXPECT_EQ(scenes_.get("scene_file", "name=first&file=" + file).status, 404) << file;
-    EXPECT_EQ(post("scene_write", {{"name", name}, {"file", file}, {"text", "x"}}).status, 404) << file;
+    EXPECT_EQ(edit("scene_write", {{"name", name}, {"file", file}, {"text", "x"}}).status, 404) << file;
     EXPECT_EQ(
-        post("scene_check", {{"name", name}, {"scene", "scenes/first.xml"}, {"file", file}, {"text", "x"}}).status, 404)
+        edit("scene_check", {{"name", name}, {"scene", "scenes/first.xml"}, {"file", file}, {"text", "x"}}).status, 404)
         << file;
     EXPECT_EQ(post("scene_look", {{"name", name}, {"scene", file}}).status, 404) << file;
   }
@@ -169,7 +177,7 @@ TEST_F(StudioScenesTest, UnknownNamesAndLargeTextsAreRefused) {
   }
   const std::string large(StudioScenes::most_text_bytes + 1, ' ');
   for (const char* what : {"scene_write", "scene_check"})
-    EXPECT_EQ(post(what, {{"name", name}, {"scene", "scenes/first.xml"}, {"file", "scenes/first.xml"}, {"text", large}})
+    EXPECT_EQ(edit(what, {{"name", name}, {"scene", "scenes/first.xml"}, {"file", "scenes/first.xml"}, {"text", large}})
                   .status,
               413);
   EXPECT_EQ(post("scene_format", {{"name", name}}).status, 404);
@@ -186,17 +194,39 @@ TEST_F(StudioScenesTest, ACheckTellsProblemsAndChangesNoFile) {
   EXPECT_EQ(get("scene_file", "name=first&file=scenes/part.xml")["draft"], "<part>\nwrong</part>");
   done = checked(name, "scenes/part.xml", "<part>\n</part>");
   EXPECT_EQ(done["ok"], true);
-  post("scene_write", {{"name", name}, {"file", "scenes/part.xml"}, {"text", "<part>\n</part>"}});
+  edit("scene_write", {{"name", name}, {"file", "scenes/part.xml"}, {"text", "<part>\n</part>"}});
   EXPECT_EQ(get("scene_file", "name=first&file=scenes/part.xml")["draft"], nullptr);
 }
 
 TEST_F(StudioScenesTest, ANewerCheckEndsTheOneBefore) {
   const std::string name = opened();
   folder_.write("bin/slow", "");
-  post("scene_check", {{"name", name}, {"scene", "scenes/first.xml"}, {"file", "scenes/first.xml"}, {"text", "wrong"}});
-  EXPECT_EQ(get("scene_checked", "name=first")["state"], "running");
+  edit("scene_check", {{"name", name}, {"scene", "scenes/first.xml"}, {"file", "scenes/first.xml"}, {"text", "wrong"}});
+  const std::string query = "name=first&file=scenes/first.xml";
+  EXPECT_EQ(get("scene_checked", query)["state"], "running");
+  wait("scene_checked", query, [&](const json&) { return fs::exists(folder_.path() / "bin/sleeps"); });
   fs::remove(folder_.path() / "bin/slow");
+  EXPECT_EQ(checked(name, "scenes/part.xml", "<part a=\"\"/>")["ok"], true);
+  EXPECT_EQ(get("scene_checked", query)["state"], "running") << "a check of another file ends none";
   EXPECT_EQ(checked(name, "scenes/first.xml", "<scene/>")["ok"], true);
+}
+
+TEST_F(StudioScenesTest, WhatAnotherWindowChangedIsNotWrittenOver) {
+  const std::string name = opened(), file = "scenes/first.xml", query = "name=first&file=" + file;
+  const json seen = get("scene_file", query)["revision"];
+  const auto by_another = [&](const char* path, const char* text) {
+    return edit(path, {{"name", name}, {"scene", file}, {"file", file}, {"text", text}, {"revision", seen}}).status;
+  };
+  EXPECT_EQ(post("scene_write", {{"name", name}, {"file", file}, {"text", "<scene/>"}}).status, 428);
+  json answer = json::parse(edit("scene_write", {{"name", name}, {"file", file}, {"text", "<scene/>"}}).json);
+  EXPECT_EQ(answer["revision"], get("scene_file", query)["revision"]);
+  for (const char* path : {"scene_write", "scene_check"}) EXPECT_EQ(by_another(path, "<scene b=\"\"/>"), 412);
+  EXPECT_EQ(get("scene_file", query)["text"], "<scene/>");
+  // A draft is a change too.
+  answer = json::parse(edit("scene_check", {{"name", name}, {"scene", file}, {"file", file}, {"text", "wrong"}}).json);
+  EXPECT_EQ(answer["revision"], get("scene_file", query)["revision"]);
+  EXPECT_EQ(by_another("scene_check", "<scene b=\"\"/>"), 412);
+  EXPECT_EQ(get("scene_file", query)["draft"], "wrong");
 }
 
 TEST_F(StudioScenesTest, ASceneIsLookedAtAndLeft) {

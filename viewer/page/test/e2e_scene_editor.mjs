@@ -91,6 +91,59 @@ async function beginFromNothing(page) {
   check('it is shown while it runs, also with a unit by mistake');
 }
 
+/** Types at the end of the text. */
+async function typeAtEnd(page, words) {
+  await page.locator('.cm-content').click();
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type(words);
+}
+
+/** The same file in two windows: neither writes over what the other one has changed unless its author says so. */
+async function inTwoWindows(page) {
+  const other = await page
+    .context()
+    .browser()
+    .newPage({ viewport: { width: 1366, height: 900 } });
+  other.setDefaultTimeout(patience.timeout);
+  await other.goto(page.url());
+  await other.locator('.scene-editor .cm-content').waitFor(patience);
+  await saved(other);
+  const shows = (of, words) =>
+    waitFor(words, async () => (await of.locator('.cm-content').innerText()).trimEnd().endsWith(words));
+  const overtaken = (of) => of.getByText('This file was changed in another window').waitFor(patience);
+
+  await page.bringToFront();
+  await typeAtEnd(page, '<!-- first -->');
+  await waitFor('first', () => onDisk(copy).endsWith('<!-- first -->'));
+  await typeAtEnd(other, '<!-- second -->');
+  await overtaken(other);
+  await shot(other, 'overtaken');
+  assert.deepEqual(await axeFinds(other), []);
+  assert.match(onDisk(copy), /<!-- first -->$/);
+  await other.getByRole('button', { name: 'Keep my text' }).click();
+  await waitFor('second', () => onDisk(copy).endsWith('<!-- second -->'));
+  assert.ok(!onDisk(copy).includes('<!-- first -->'));
+  await other.getByLabel('Earlier versions').selectOption({ index: 1 });
+  await shows(other, '<!-- first -->');
+  await waitFor('the first again', () => onDisk(copy).endsWith('<!-- first -->'));
+  await other.getByRole('button', { name: 'Undo' }).click();
+  await waitFor('the second again', () => onDisk(copy).endsWith('<!-- second -->'));
+  check('a text is not written over by another window; its author keeps it, and the other stays a version');
+
+  await typeAtEnd(page, '<!-- third -->');
+  await overtaken(page);
+  await page.getByRole('button', { name: 'Show the other text' }).click();
+  await shows(page, '<!-- second -->');
+  await saved(page);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await waitFor('third', () => onDisk(copy).endsWith('<!-- first --><!-- third -->'));
+  // As when its author comes back to the window; there is none that a browser without a screen could leave.
+  await other.evaluate(() => window.dispatchEvent(new Event('focus')));
+  await shows(other, '<!-- third -->');
+  await other.close();
+  check('the other text is shown, the own one is a step back, and an untouched window shows what is new');
+}
+
 const studio = programs.start('insula', ['studio', '--no-browser', '--port', '0', '--data', data], ownBus());
 const browser = await launch();
 try {
@@ -199,6 +252,8 @@ try {
   assert.match(onDisk(copy), /<!-- last words -->$/);
   assert.equal(onDisk(part), partBefore);
   check('what was typed just before another file was opened is kept');
+
+  await inTwoWindows(page);
 
   await lookAtIt(page);
   const seen = picture(page);

@@ -13,7 +13,7 @@ import { addARetractor, moveTheVessel, paintAPlaque, project } from './studio_de
 import { goalsAndStrands } from './studio_forms.mjs';
 import { childrenOf, gatewayBelow } from './studio_processes.mjs';
 import { dropped, picture, shots, step, viewport } from './studio_page.mjs';
-import { twoWindows } from './studio_windows.mjs';
+import { removedElsewhere, twoWindows } from './studio_windows.mjs';
 
 const programs = new Programs();
 const data = mkdtempSync(join(tmpdir(), 'insula_studio_'));
@@ -255,6 +255,9 @@ try {
   const cases = programs.insula(['cases', '--data', data]);
   assert.match(cases, /narrow_neck\s.*4 exercises, added/);
   check('the case is added, and its exercise opens');
+  await played.close();
+  await removedElsewhere(page, address);
+  check('a window whose case was removed in another one says so');
 } finally {
   await browser.close();
   await programs.end();

@@ -57,3 +57,21 @@ export async function twoWindows(page, address) {
   assert.deepEqual(await choices(page), before, 'undo is of the case, whichever window has changed it');
   return seconds;
 }
+
+/** A window whose case is removed in another one says so, and lets nothing be done to it. */
+export async function removedElsewhere(page, address) {
+  const other = await page.context().browser().newPage({ viewport });
+  other.setDefaultTimeout(patience.timeout);
+  await other.goto(`${address}#narrow_neck`);
+  await difficulty(other).waitFor(patience);
+  await page.getByRole('link', { name: 'All projects' }).click();
+  page.once('dialog', (d) => d.accept());
+  await page.getByRole('button', { name: 'Remove narrow_neck' }).click();
+  await other.getByText('This case is not there any more').waitFor(patience);
+  assert.equal(await other.locator('.editor .columns').getAttribute('inert'), '');
+  const asked = [];
+  other.on('request', (r) => asked.push(r.url()));
+  await other.waitForTimeout(2000);
+  assert.deepEqual(asked, [], 'nothing is asked any more');
+  await other.close();
+}

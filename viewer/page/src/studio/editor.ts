@@ -3,6 +3,7 @@
 // gateway at once, which keeps it.
 import { el, setText } from '../hud/dom';
 import { text } from '../languages/text';
+import { Refusal } from '../start/api';
 import type { Act, Project, StudioApi } from './api';
 import { BuildPanel } from './build_panel';
 import { CasePanel } from './case_panel';
@@ -27,6 +28,7 @@ import { WallPanel } from './wall_panel';
 import { reason } from './wording';
 
 const everyMs = 600;
+const notFound = 404;
 
 /** What the panels ask for. */
 export interface Asks {
@@ -44,6 +46,7 @@ export class Editor {
   private readonly undo = el('button', { type: 'button' }, text('Undo'));
   private readonly redo = el('button', { type: 'button' }, text('Redo'));
   private readonly title = el('h2', {});
+  private readonly columns: HTMLElement;
   private readonly view = new SurfaceView();
   private readonly panels: { root: HTMLElement; show(p: Project): void }[];
   private readonly neck: NeckPanel;
@@ -70,7 +73,7 @@ export class Editor {
       act: (act: Act, more: object) => api.act(name, act, more),
     };
     this.deeds = new Deeds(gateway, (project, ofDeed) => this.told(project, ofDeed), {
-      failed: (e) => this.tell(reason(e)),
+      failed: (e) => (e instanceof Refusal && e.status === notFound ? this.removed() : this.tell(reason(e))),
       overtaken: (again) => this.overtaken(again),
     });
     const asks: Asks = {
@@ -105,7 +108,8 @@ export class Editor {
     setText(this.title, name);
     const bar = el('div', { class: 'bar' }, this.title, this.undo, this.redo, this.say, this.again);
     const side = el('div', { class: 'steps' }, ...this.panels.map((p) => p.root));
-    this.root.append(bar, el('div', { class: 'columns' }, this.views.root, side));
+    this.columns = el('div', { class: 'columns' }, this.views.root, side);
+    this.root.append(bar, this.columns);
     this.endKeys = undoKeys((what) => void this.deeds.act(what));
     this.endHands = handsAtWork(
       this.root,
@@ -124,6 +128,14 @@ export class Editor {
     this.pose.end();
     this.retractors.end();
     this.view.end();
+  }
+
+  /** What was typed stays readable, and nothing is asked any more. */
+  private removed(): void {
+    this.end();
+    this.undo.disabled = this.redo.disabled = true;
+    this.columns.inert = true;
+    this.tell(text('This case is not there any more: it was removed in another window.'));
   }
 
   /** A refusal stands until something has been done. */

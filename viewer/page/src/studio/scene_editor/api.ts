@@ -33,6 +33,8 @@ export interface SceneText {
   text: string;
   draft: string | null;
   versions: Version[];
+  /** Another one for another text or draft. */
+  revision: string;
 }
 
 export interface Problem {
@@ -86,6 +88,7 @@ export const sceneRefusals = (): string[] => [
   message('there is no such scene'),
   message('there is no such file in this scene'),
   message('there is no such version'),
+  message('this file was changed in another window'),
   message('this scene is too large: 200 kB are taken'),
   message('the scene cannot be written: is the disk full?'),
   message('the scene cannot be checked: is the disk full?'),
@@ -129,6 +132,7 @@ export class ScenesApi {
       text: text(f.text),
       draft: typeof f.draft === 'string' ? f.draft : null,
       versions: versionsOf(f.versions),
+      revision: text(f.revision),
     };
   }
 
@@ -136,18 +140,32 @@ export class ScenesApi {
     return text(object(await this.api.ask('studio/scene_version', { name, file, number: String(version) })).text);
   }
 
-  async write(name: string, file: string, content: string): Promise<Version[]> {
-    const answer = await this.api.ask('studio/scene_write', {}, { name, file, text: content });
-    return versionsOf(object(answer).versions);
+  async write(
+    name: string,
+    file: string,
+    content: string,
+    revision: string,
+  ): Promise<{ versions: Version[]; revision: string }> {
+    const answer = object(await this.api.ask('studio/scene_write', {}, { name, file, text: content, revision }));
+    return { versions: versionsOf(answer.versions), revision: text(answer.revision) };
   }
 
-  /** Null: a newer check was begun meanwhile. */
-  async check(name: string, scene: string, file: string, content: string): Promise<Checked | null> {
-    const wanted = number(
-      object(await this.api.ask('studio/scene_check', {}, { name, scene, file, text: content })).number,
-    );
+  async beginCheck(
+    name: string,
+    scene: string,
+    file: string,
+    content: string,
+    revision: string,
+  ): Promise<{ number: number; revision: string }> {
+    const asked = { name, scene, file, text: content, revision };
+    const answer = object(await this.api.ask('studio/scene_check', {}, asked));
+    return { number: number(answer.number), revision: text(answer.revision) };
+  }
+
+  /** Of the check of this number. Null: a newer one of the file was begun meanwhile. */
+  async checked(name: string, file: string, wanted: number): Promise<Checked | null> {
     for (;;) {
-      const c = object(await this.api.ask('studio/scene_checked', { name }));
+      const c = object(await this.api.ask('studio/scene_checked', { name, file }));
       if (number(c.number) !== wanted) return null;
       if (text(c.state) === 'failed') throw new Error(text(c.error));
       if (text(c.state) === 'done') return { ok: c.ok === true, problems: problemsOf(c.problems) };

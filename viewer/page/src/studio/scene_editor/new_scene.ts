@@ -6,6 +6,7 @@ import { field } from '../fields';
 import { reason } from '../wording';
 import type { ScenesApi } from './api';
 import type { Declarations, ElementKind } from './declarations';
+import { OpenedFile } from './opened_file';
 import { copied, sceneAddress } from './scene_copy';
 
 /** Those that a scene may begin with, by their kind, in the order of the declarations. */
@@ -74,9 +75,10 @@ export class NewScene {
       const kinds = [...this.ticked].filter(([, input]) => input.checked).map(([kind]) => kind);
       // With the parser of the editor, which is loaded when it is first wanted.
       const { withComponents } = await import('./components');
-      const begun = withComponents((await this.api.file(scene.name, file)).text, kinds, all);
+      const empty = await this.api.file(scene.name, file);
       // What is checked is kept, with its problems.
-      await this.api.check(scene.name, file, file, begun);
+      const opened = new OpenedFile(this.api, scene.name, file, empty.revision);
+      await opened.check(file, withComponents(empty.text, kinds, all));
       window.location.hash = sceneAddress(scene.name);
     } catch (e) {
       setText(this.say, reason(e));

@@ -6,11 +6,13 @@ import { el, setText } from '../../hud/dom';
 import { text } from '../../languages/text';
 import { select } from '../fields';
 import { undoKeys } from '../undo_keys';
+import { Refusal } from '../../start/api';
 import { reason } from '../wording';
 import type { Problem, SceneCopy, ScenesApi, SceneText } from './api';
-import type { Declarations, ElementKind, Parameter } from './declarations';
+import type { Declarations, ElementKind } from './declarations';
 import { type Change, changedAttribute, withChild, withoutElement } from './edits';
 import { LiveView } from './live_view';
+import { OpenedFile } from './opened_file';
 import {
   attribute,
   elementAt,
@@ -21,6 +23,8 @@ import {
   withDescendants,
 } from './outline';
 import { ProblemList } from './problems';
+import { OvertakenNotice } from './overtaken_notice';
+import { PointPlacing } from './point_placing';
 import { meshesFrom, PropertyPanel } from './property_panel';
 import type { Seen } from './seen';
 import { startAttributes } from './start_values';
@@ -28,14 +32,22 @@ import { TextPanel } from './text_panel';
 import { TreePanel } from './tree_panel';
 import { VersionSelect } from './version_select';
 import { takenView } from './taken_view';
-import { pointOf, pointText } from './values';
 
 const quietMs = 300;
+const preconditionFailed = 412;
 
 export class SceneEditor {
   readonly root = el('div', { class: 'scene-editor' });
   private readonly say = el('p', { class: 'say', role: 'alert' });
   private readonly state = el('p', { class: 'state', role: 'status' });
+  private readonly placing = new PointPlacing(
+    (at) => this.live.place(at),
+    (words) => setText(this.say, words),
+  );
+  private readonly overtaken = new OvertakenNotice(
+    () => void this.trying(this.showTheirs()),
+    () => void this.trying(this.keepMine()),
+  );
   private readonly file = el('select', { 'aria-label': text('File') });
   private readonly endKeys: () => void;
   private readonly undo = el('button', { type: 'button' }, text('Undo'));
@@ -51,11 +63,10 @@ export class SceneEditor {
   private selected: number[] = [];
   private scene: string;
   /** File whose text is shown. */
-  private opened = '';
+  private on: OpenedFile;
   private saved = '';
   private timer = 0;
   private choosing = false;
-  private placing: { path: number[]; element: string; parameter: Parameter } | null = null;
 
   static async open(api: ScenesApi, name: string): Promise<SceneEditor> {
     const [copy, declarations] = await Promise.all([api.scene(name), api.declarations()]);
@@ -70,13 +81,14 @@ export class SceneEditor {
     private readonly declarations: Declarations,
   ) {
     this.scene = copy.scenes[0] ?? '';
+    this.on = new OpenedFile(api, copy.name, '', '');
     this.content = new TextPanel(declarations, { changed: () => this.changed(), moved: (at) => this.moved(at) });
     this.properties = new PropertyPanel(
       declarations,
       meshesFrom(copy.meshes, () => this.opened),
       {
         set: (e, name, value) => this.change(changedAttribute(this.content.content, e, name, value)),
-        place: (e, p) => this.place(e, p),
+        place: (e, p) => this.placing.begin(e, p),
         add: (e, child) => this.add(e, child),
         remove: (e) => {
           this.selected = e.parent ? pathOf(e.parent) : [];
@@ -87,13 +99,14 @@ export class SceneEditor {
     this.versions = new VersionSelect(async (n) => this.content.replace(await api.version(copy.name, this.opened, n)));
     this.live = new LiveView(api, copy.name, () => this.scene, {
       taken: (seen) => void this.trying(this.take(seen)),
-      placed: (at) => this.placed(at),
+      placed: (at) => this.change(this.placing.placed(at, this.outline, this.content.content)),
       shown: (on) => this.root.classList.toggle('looking', on),
     });
     this.fileChoice();
     this.undo.onclick = () => this.content.undo();
     this.redo.onclick = () => this.content.redo();
     this.endKeys = undoKeys((what) => this.content[what]());
+    window.addEventListener('focus', this.lookAgain);
     this.build();
   }
 
@@ -102,7 +115,7 @@ export class SceneEditor {
       'div',
       { class: 'bar' },
       ...[el('h2', {}, this.copy.name), this.file, this.undo, this.redo, this.versions.root, this.live.open],
-      ...[this.state, this.say],
+      ...[this.state, this.say, this.overtaken.root],
     );
     const middle = el('div', { class: 'middle' }, this.live.root, this.content.root, this.problems.root);
     this.root.append(bar, el('div', { class: 'panels' }, this.tree.root, middle, this.properties.root));
@@ -118,6 +131,7 @@ export class SceneEditor {
 
   end(): void {
     this.endKeys();
+    window.removeEventListener('focus', this.lookAgain);
     this.keep();
     this.content.end();
     this.live.end();
@@ -128,7 +142,7 @@ export class SceneEditor {
     window.clearTimeout(this.timer);
     const { content } = this.content;
     if (content === this.saved) return;
-    void this.api.check(this.copy.name, this.scene, this.opened, content).catch(() => undefined);
+    void this.on.check(this.scene, content).catch(() => undefined);
   }
 
   private async trying(work: Promise<unknown>): Promise<void> {
@@ -136,9 +150,43 @@ export class SceneEditor {
       await work;
       setText(this.say, '');
     } catch (e) {
-      setText(this.say, reason(e));
+      const overtaken = e instanceof Refusal && e.status === preconditionFailed;
+      this.overtaken.show(overtaken);
+      setText(this.say, overtaken ? '' : reason(e));
+      if (overtaken) setText(this.state, '');
     }
   }
+
+  /** What is done next is done to the file as it is now. */
+  private begin(file: string, got: SceneText): void {
+    this.on = new OpenedFile(this.api, this.copy.name, file, got.revision);
+    this.saved = got.text;
+    this.versions.show(got.versions);
+    this.overtaken.show(false);
+  }
+
+  /** The own text is one step back. */
+  private async showTheirs(): Promise<void> {
+    const got = await this.api.file(this.copy.name, this.opened);
+    this.begin(this.opened, got);
+    this.content.replace(got.draft ?? got.text);
+  }
+
+  private async keepMine(): Promise<void> {
+    this.begin(this.opened, await this.api.file(this.copy.name, this.opened));
+    this.changed();
+  }
+
+  /** Whoever comes back to this window sees what was changed in another one, unless both have changed something. */
+  private readonly lookAgain = (): void => {
+    const { on } = this;
+    const untouched = (): boolean => on === this.on && this.saved === this.content.content;
+    const look = async (): Promise<void> => {
+      const { revision } = await this.api.file(this.copy.name, on.file);
+      if (revision !== on.revision && untouched()) await this.showTheirs();
+    };
+    if (untouched()) void this.trying(look());
+  };
 
   /** Puts another text of a file in place, as one step that can be taken back. */
   private readonly writer = async (file: string, change: (doc: string) => Change | null): Promise<void> => {
@@ -148,13 +196,12 @@ export class SceneEditor {
   };
 
   private async load(file: string): Promise<void> {
-    const got: SceneText = await this.api.file(this.copy.name, file);
+    const got = await this.api.file(this.copy.name, file);
     this.keep();
-    this.noPlacing();
-    this.file.value = this.opened = file;
+    this.begin(file, got);
+    this.placing.end();
+    this.file.value = file;
     if (this.copy.scenes.includes(file)) this.scene = file;
-    this.saved = got.text;
-    this.versions.show(got.versions);
     this.selected = [];
     this.content.open(got.draft ?? got.text);
     this.changed();
@@ -167,8 +214,16 @@ export class SceneEditor {
     this.redo.disabled = !this.content.canRedo;
     this.showElements();
     setText(this.state, text('Checking …'));
+    this.checkSoon(quietMs);
+  }
+
+  private checkSoon(waitMs: number): void {
     window.clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => void this.trying(this.check()), quietMs);
+    this.timer = window.setTimeout(() => void this.trying(this.check()), waitMs);
+  }
+
+  private get opened(): string {
+    return this.on.file;
   }
 
   private get chosen(): OutlineElement | null {
@@ -190,9 +245,11 @@ export class SceneEditor {
   }
 
   private async check(): Promise<void> {
-    const [file, content] = [this.opened, this.content.content];
-    const checked = await this.api.check(this.copy.name, this.scene, file, content);
-    if (!checked || file !== this.opened || content !== this.content.content) return;
+    const { on } = this;
+    const { content } = this.content;
+    const checked = await on.check(this.scene, content);
+    if (on !== this.on || content !== this.content.content) return;
+    if (!checked) return this.checkSoon(quietMs + 1000 * Math.random()); // another window has asked for the same file
     this.found = checked.problems;
     this.problems.show(this.found);
     this.content.mark(this.ofThisFile());
@@ -201,8 +258,8 @@ export class SceneEditor {
       setText(this.state, text('Not saved: the scene has errors. The one before stays.'));
       return;
     }
-    const versions = await this.api.write(this.copy.name, file, content);
-    if (file !== this.opened) return;
+    const versions = await on.write(content);
+    if (on !== this.on) return;
     this.versions.show(versions);
     this.saved = content;
     if (this.content.content === this.saved) setText(this.state, text('Saved'));
@@ -210,28 +267,6 @@ export class SceneEditor {
 
   private take(seen: Seen): Promise<void> {
     return takenView(this.api, this.copy, this.opened, this.content.content, seen, this.writer);
-  }
-
-  private place(e: OutlineElement, parameter: Parameter): void {
-    const value = attribute(e, parameter.name)?.value ?? parameter.fallback;
-    const at = value === '' ? [0, 0, 0] : pointOf(parameter, value);
-    setText(this.say, at ? '' : text('This value is no point: write numbers and a unit first.'));
-    this.placing = at && { path: pathOf(e), element: e.name, parameter };
-    this.live.place(at);
-  }
-
-  /** Of the element whose point is placed, wherever its tag is now. */
-  private placed(at: readonly number[]): void {
-    const e = this.placing && this.outline && elementOfPath(this.outline, this.placing.path);
-    if (!e || !this.placing || e.name !== this.placing.element) return;
-    const { parameter } = this.placing;
-    const before = attribute(e, parameter.name)?.value ?? parameter.fallback;
-    this.change(changedAttribute(this.content.content, e, parameter.name, pointText(parameter, at, before)));
-  }
-
-  private noPlacing(): void {
-    if (this.placing) this.live.place(null);
-    this.placing = null;
   }
 
   private change(change: Change | null): void {
@@ -247,7 +282,7 @@ export class SceneEditor {
   }
 
   private choose(e: OutlineElement): void {
-    this.noPlacing();
+    this.placing.end();
     this.selected = pathOf(e);
     this.choosing = true;
     this.content.select(e.from, e.tagTo);
