@@ -4,9 +4,9 @@
 // it until it has none.
 import { el, setText } from '../../hud/dom';
 import { text } from '../../languages/text';
+import { Refusal } from '../../start/api';
 import { select } from '../fields';
 import { undoKeys } from '../undo_keys';
-import { Refusal } from '../../start/api';
 import { reason } from '../wording';
 import type { Problem, SceneCopy, ScenesApi, SceneText } from './api';
 import type { Declarations, ElementKind } from './declarations';
@@ -22,16 +22,16 @@ import {
   pathOf,
   withDescendants,
 } from './outline';
-import { ProblemList } from './problems';
 import { OvertakenNotice } from './overtaken_notice';
 import { PointPlacing } from './point_placing';
+import { ProblemList } from './problems';
 import { meshesFrom, PropertyPanel } from './property_panel';
 import type { Seen } from './seen';
 import { startAttributes } from './start_values';
+import { takenView } from './taken_view';
 import { TextPanel } from './text_panel';
 import { TreePanel } from './tree_panel';
 import { VersionSelect } from './version_select';
-import { takenView } from './taken_view';
 
 const quietMs = 300;
 const preconditionFailed = 412;
