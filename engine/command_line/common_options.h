@@ -29,11 +29,14 @@ inline QuantityOption seconds(std::string doc) { return {.bare = "s", .min = "0 
 /// An option that takes a scene: its file, or the name of one of the project or of an added case.
 template <class Value>
 CLI::Option* add_scene(CLI::App& command, const std::string& name, Value& value, const std::string& doc) {
-  const auto file_of = [](std::string& text) {
+  const auto all = [] {
+    std::vector<NamedScene> scenes = shipped_scenes(project_folder());
+    for (NamedScene& added : added_scenes({})) scenes.push_back(std::move(added));
+    return scenes;
+  };
+  const auto file_of = [all](std::string& text) {
     try {
-      std::vector<NamedScene> scenes = shipped_scenes(project_folder());
-      for (NamedScene& added : added_scenes({})) scenes.push_back(std::move(added));
-      text = scene_called(text, scenes).string();
+      text = scene_called(text, all).string();
       return std::string();
     } catch (const InputError& e) {
       return std::string(e.what());

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/base/diagnostic.h"
+#include "core/base/text.h"
 #include "core/params/option.h"
 #include "core/registry/registry.h"
 #include "engine/command_line/load_plugins.h"
@@ -34,8 +35,8 @@ std::string unknown_command(const CLI::App& app, const std::vector<std::string>&
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   if (std::find(names.begin(), names.end(), *word) != names.end()) return "";
   const std::string near = nearest_name(*word, names);
-  return near.empty() ? fmt::format("no command \"{}\"; there are {}", *word, fmt::join(names, ", "))
-                      : fmt::format("no command \"{}\"; did you mean \"{}\"?", *word, near);
+  const std::string hint = near.empty() ? fmt::format("; there are {}", fmt::join(names, ", ")) : did_you_mean(near);
+  return "no command " + in_quotes(*word) + hint;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "core/base/diagnostic.h"
 #include "core/base/input_error.h"
+#include "core/base/text.h"
 #include "core/model/formats/file_bytes.h"
 #include "engine/sharing/case_list.h"
 
@@ -58,19 +59,19 @@ std::vector<NamedScene> added_scenes(const fs::path& data) {
   return out;
 }
 
-fs::path scene_called(const std::string& given, const std::vector<NamedScene>& scenes) {
+fs::path scene_called(const std::string& given, const std::function<std::vector<NamedScene>()>& scenes) {
   const fs::path file(given);
   std::error_code error;
   if (fs::is_regular_file(file, error) || file.has_extension() || file.is_absolute()) return file;
   std::vector<std::string> names;
-  for (const NamedScene& s : scenes) {
+  for (const NamedScene& s : scenes()) {
     const bool as_its_file = s.name == without_number(given) && s.file.stem() == given;
     if (s.name == given || as_its_file) return s.file.lexically_normal();
     names.push_back(s.name);
   }
   const std::string near = nearest_name(given, names);
-  throw InputError(near.empty() ? fmt::format("no scene \"{}\"; there are {}", given, fmt::join(names, ", "))
-                                : fmt::format("no scene \"{}\"; did you mean \"{}\"?", given, near));
+  const std::string hint = near.empty() ? fmt::format("; there are {}", fmt::join(names, ", ")) : did_you_mean(near);
+  throw InputError("no scene " + in_quotes(given) + hint);
 }
 
 }  // namespace insula

@@ -2,6 +2,7 @@
 // Short names of scenes, for people who type them.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ std::vector<NamedScene> shipped_scenes(const std::filesystem::path& project);
 std::vector<NamedScene> added_scenes(const std::filesystem::path& data);
 
 /// `given` itself if it is a file or ends as one, else the file of the scene that is called so. Names of files without
-/// their ending count as well, such as "3_clipping". Throws InputError with the nearest name if there is none.
-std::filesystem::path scene_called(const std::string& given, const std::vector<NamedScene>& scenes);
+/// their ending count as well, such as "3_clipping". `scenes` reads many files, so only a name asks for it. Throws
+/// InputError with the nearest name if there is none.
+std::filesystem::path scene_called(const std::string& given, const std::function<std::vector<NamedScene>()>& scenes);
 
 }  // namespace insula

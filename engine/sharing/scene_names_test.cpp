@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <stdexcept>
 
 #include "core/base/input_error.h"
 #include "core/testing/temp_folder.h"
@@ -13,9 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+fs::path called(const std::string& given, const std::vector<NamedScene>& scenes) {
+  return scene_called(given, [&] { return scenes; });
+}
+
 std::string error_of(const std::string& given, const std::vector<NamedScene>& scenes) {
   try {
-    return "no error: " + scene_called(given, scenes).string();
+    return "no error: " + called(given, scenes).string();
   } catch (const InputError& e) {
     return e.what();
   }
@@ -32,9 +37,9 @@ TEST(SceneNames, AreThoseOfFilesAndOfTheFoldersOfCases) {
   std::vector<std::string> names;
   for (const NamedScene& s : scenes) names.push_back(s.name);
   EXPECT_EQ(names, (std::vector<std::string>{"open", "touch", "alone", "mine/clipping", "tip", "tip/pause"}));
-  EXPECT_EQ(scene_called("open", scenes), folder.path() / "scenes/training/2_open.xml");
-  EXPECT_EQ(scene_called("2_open", scenes), folder.path() / "scenes/training/2_open.xml");
-  EXPECT_EQ(scene_called("tip/pause", scenes), folder.path() / "scenes/cases/tip/pause.xml");
+  EXPECT_EQ(called("open", scenes), folder.path() / "scenes/training/2_open.xml");
+  EXPECT_EQ(called("2_open", scenes), folder.path() / "scenes/training/2_open.xml");
+  EXPECT_EQ(called("tip/pause", scenes), folder.path() / "scenes/cases/tip/pause.xml");
   EXPECT_EQ(error_of("tip/pose", scenes), "no scene \"tip/pose\"; did you mean \"tip/pause\"?");
   EXPECT_EQ(error_of("4_open", scenes), "no scene \"4_open\"; did you mean \"open\"?");
   EXPECT_EQ(error_of("case", {scenes.begin(), scenes.begin() + 2}), "no scene \"case\"; there are open, touch");
@@ -43,9 +48,10 @@ TEST(SceneNames, AreThoseOfFilesAndOfTheFoldersOfCases) {
 TEST(SceneNames, FilesAreLeftToTheLoader) {
   test_files::TempFolder folder;
   folder.write("plain", "<scene/>");
-  EXPECT_EQ(scene_called((folder.path() / "plain").string(), {}), folder.path() / "plain");
-  EXPECT_EQ(scene_called("nowhere/mine.xml", {}), "nowhere/mine.xml");
-  EXPECT_EQ(scene_called("/nowhere/mine", {}), "/nowhere/mine");
+  const auto unasked = []() -> std::vector<NamedScene> { throw std::logic_error("a file needs no list of scenes"); };
+  EXPECT_EQ(scene_called((folder.path() / "plain").string(), unasked), folder.path() / "plain");
+  EXPECT_EQ(scene_called("nowhere/mine.xml", unasked), "nowhere/mine.xml");
+  EXPECT_EQ(scene_called("/nowhere/mine", unasked), "/nowhere/mine");
 }
 
 TEST(SceneNames, OfTheProjectDiffer) {

@@ -30,7 +30,7 @@ void bind_scene_names(nb::module_& m) {
       "scene_called",
       [](const std::string& given, const std::string& folder) {
         try {
-          return scene_called(given, shipped_scenes(folder)).string();
+          return scene_called(given, [&] { return shipped_scenes(folder); }).string();
         } catch (const InputError& e) {
           PyErr_SetString(PyExc_FileNotFoundError, e.what());
           throw nb::python_error();

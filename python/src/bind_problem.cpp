@@ -120,7 +120,7 @@ void bind_block(nb::module_& m) {
 void bind_tool_terms(nb::module_& m) {
   nb::class_<ToolTerms>(m, "ToolTerms", "A tool in a hand, with its part in the rows of a problem.")
       .def_prop_ro(
-          "hand", [](const ToolTerms& t) { return t.hand == 0 ? "left" : "right"; }, "The hand.")
+          "hand", [](const ToolTerms& t) { return std::string(hand_name(t.hand)); }, "The hand.")
       .def_prop_ro(
           "jacobian",
           [](const ToolTerms& t) {
@@ -137,9 +137,7 @@ void bind_tool_terms(nb::module_& m) {
           "device", [](const ToolTerms& t) { return tuple_of(t.device); }, "Pose of the device.")
       .def_prop_ro(
           "free", [](const ToolTerms& t) { return tuple_of(t.free); }, "Pose after the free motion.")
-      .def("__repr__", [](const ToolTerms& t) {
-        return fmt::format("<ToolTerms of the {} hand>", t.hand == 0 ? "left" : "right");
-      });
+      .def("__repr__", [](const ToolTerms& t) { return fmt::format("<ToolTerms of the {} hand>", hand_name(t.hand)); });
 }
 
 }  // namespace

@@ -156,17 +156,19 @@ ApiAnswer StudioScenes::edit(std::string_view path, const std::string& name, con
   if (!before) return refusal(404, no_file);
   if (seen.empty()) return refusal(428, "the revision of the file is missing");
   if (seen != before->revision()) return refusal(412, "this file was changed in another window");
-  return path == "scene_check" ? check(name, file, body) : write(name, file, text);
+  return path == "scene_check" ? check(name, file, before->text, body) : write(name, file, text);
 }
 
-ApiAnswer StudioScenes::check(const std::string& name, const std::string& file, const Json& body) {
+/// before: the file's text on disk.
+ApiAnswer StudioScenes::check(const std::string& name, const std::string& file, const std::string& before,
+                              const Json& body) {
   const std::string text = text_of(body, "text"), scene = text_of(body, "scene");
   const std::vector<std::string> scenes = files_.scenes(name);
   if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) return refusal(404, no_scene);
   checks_.erase({name, file});  // its program ends with it
   const auto folder = files_.for_check(name, file, text);
   if (!folder) return refusal(404, no_file);
-  if (const auto before = files_.read(name, file); before && before->text != text) files_.keep_draft(name, file, text);
+  if (before != text) files_.keep_draft(name, file, text);
   Check& now = checks_[{name, file}];
   now = {
       ++check_number_, *folder,

@@ -58,7 +58,8 @@ class StudioScenes {
   ApiAnswer begin(const std::string& name);
   ApiAnswer open_source(const std::string& source);
   ApiAnswer edit(std::string_view path, const std::string& name, const nlohmann::json& body);
-  ApiAnswer check(const std::string& name, const std::string& file, const nlohmann::json& body);
+  ApiAnswer check(const std::string& name, const std::string& file, const std::string& before,
+                  const nlohmann::json& body);
   ApiAnswer write(const std::string& name, const std::string& file, const std::string& text);
   ApiAnswer act(std::string_view path, const std::string& name, const nlohmann::json& body);
   nlohmann::json sources() const;

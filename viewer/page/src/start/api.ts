@@ -220,6 +220,12 @@ export class Refusal extends Error {
   }
 }
 
+export const isRefusal = (e: unknown, status: number): boolean => e instanceof Refusal && e.status === status;
+/** What is named is not there. */
+export const notFound = 404;
+/** What a change was meant for has been changed by another page since. */
+export const preconditionFailed = 412;
+
 /** What an answer of the gateway holds. Throws a Refusal. */
 export async function contentOf(answer: Response): Promise<unknown> {
   const json: unknown = await answer.json().catch(() => ({}));

@@ -2,7 +2,7 @@
 // What an author does to a project. One request goes after the other, and a change of choices is made of what the
 // answer before it says. So two quick changes of one list both stay. Each request names the revision that the page
 // shows. If the case was changed in another window since, nothing is done, and the author is told.
-import { Refusal } from '../start/api';
+import { isRefusal, preconditionFailed } from '../start/api';
 import type { Act, Choices, Project } from './api';
 
 /** New values of choices, or what makes them of the present ones. */
@@ -24,9 +24,6 @@ interface Deed {
   act: Act;
   more(now: Choices): object;
 }
-
-const preconditionFailed = 412;
-const isOvertaken = (e: unknown): boolean => e instanceof Refusal && e.status === preconditionFailed;
 
 export class Deeds {
   private last: Promise<unknown> = Promise.resolve();
@@ -110,7 +107,7 @@ export class Deeds {
       this.take(project, true);
       return project;
     } catch (e) {
-      if (isOvertaken(e)) return null;
+      if (isRefusal(e, preconditionFailed)) return null;
       throw e;
     }
   }

@@ -3,7 +3,7 @@
 // gateway at once, which keeps it.
 import { el, setText } from '../hud/dom';
 import { text } from '../languages/text';
-import { Refusal } from '../start/api';
+import { isRefusal, notFound } from '../start/api';
 import type { Act, Project, StudioApi } from './api';
 import { BuildPanel } from './build_panel';
 import { CasePanel } from './case_panel';
@@ -28,7 +28,6 @@ import { WallPanel } from './wall_panel';
 import { reason } from './wording';
 
 const everyMs = 600;
-const notFound = 404;
 
 /** What the panels ask for. */
 export interface Asks {
@@ -73,7 +72,7 @@ export class Editor {
       act: (act: Act, more: object) => api.act(name, act, more),
     };
     this.deeds = new Deeds(gateway, (project, ofDeed) => this.told(project, ofDeed), {
-      failed: (e) => (e instanceof Refusal && e.status === notFound ? this.removed() : this.tell(reason(e))),
+      failed: (e) => (isRefusal(e, notFound) ? this.removed() : this.tell(reason(e))),
       overtaken: (again) => this.overtaken(again),
     });
     const asks: Asks = {

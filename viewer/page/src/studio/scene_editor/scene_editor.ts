@@ -4,7 +4,7 @@
 // it until it has none.
 import { el, setText } from '../../hud/dom';
 import { text } from '../../languages/text';
-import { Refusal } from '../../start/api';
+import { isRefusal, preconditionFailed } from '../../start/api';
 import { select } from '../fields';
 import { undoKeys } from '../undo_keys';
 import { reason } from '../wording';
@@ -34,7 +34,6 @@ import { TreePanel } from './tree_panel';
 import { VersionSelect } from './version_select';
 
 const quietMs = 300;
-const preconditionFailed = 412;
 
 export class SceneEditor {
   readonly root = el('div', { class: 'scene-editor' });
@@ -150,7 +149,7 @@ export class SceneEditor {
       await work;
       setText(this.say, '');
     } catch (e) {
-      const overtaken = e instanceof Refusal && e.status === preconditionFailed;
+      const overtaken = isRefusal(e, preconditionFailed);
       this.overtaken.show(overtaken);
       setText(this.say, overtaken ? '' : reason(e));
       if (overtaken) setText(this.state, '');
