@@ -10,7 +10,8 @@ namespace insula {
 
 struct Proximity {
   int piece = -1;            ///< convex piece of tool a; -1 when a is a surface
-  int vertex = -1;           ///< vertex of surface a; -1 when a is a tool
+  int vertex = -1;           ///< vertex of surface a; with a tool a, the wall's vertex or point within an edge that
+                             ///< identifies the contact (vertex_collider.h); -1: none
   int other_piece = -1;      ///< convex piece of tool b; -1 when b is a surface
   int side = 0;              ///< surface pairs: 0 if the vertex is of the first surface of the pair, 1 if of the second
   int triangle = -1;         ///< of surface b

@@ -55,8 +55,8 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
         p.in_hand = instrument && instrument->hand_index() >= 0;
         for (const ConvexPiece& piece : tool_a->link_pieces(i)) p.pieces_a.push_back(rounded(piece));
         if (contact_geometry.is("vertices"))
-          p.vertex_collider = std::make_unique<VertexCollider>(tool_a->link_pieces(i), sb->triangles(),
-                                                               p.b->collision().vertex_count());
+          p.vertex_collider =
+              std::make_unique<VertexCollider>(tool_a->link_pieces(i), sb->triangles(), sb->rest().vertices);
         else
           p.tool_collider = std::make_unique<ToolCollider>(tool_a->link_pieces(i), p.b->collision().triangle_count());
         p.contacts.reserve(room);

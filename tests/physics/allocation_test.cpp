@@ -110,7 +110,7 @@ TEST(Allocation, DetectionByVerticesAllocatesNothing) {
   mesh.build(rest.vertices, rest.triangles);
   ConvexPiece jaw{"jaw", {}, 0};
   for (int i = 0; i < 8; ++i) jaw.points.push_back({i & 1 ? 3e-3 : -3e-3, i & 2 ? 1e-3 : -1e-3, i & 4 ? 5e-4 : -5e-4});
-  VertexCollider collider({jaw, {"rod", {Vec3(0, 0, 5e-4), Vec3(0, 0, 0.02)}, 1e-3}}, rest.triangles, int(now.size()));
+  VertexCollider collider({jaw, {"rod", {Vec3(0, 0, 5e-4), Vec3(0, 0, 0.02)}, 1e-3}}, rest.triangles, rest.vertices);
   std::vector<Proximity> found;
   found.reserve(2 * now.size());
   ContactSelection selection;

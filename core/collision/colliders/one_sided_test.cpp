@@ -31,11 +31,15 @@ struct Row {
     for (int i = 0; i + 1 < n; ++i) t.push_back({i, i + 1, n + i});
     return t;
   }
-  explicit Row(bool one) : triangles(strip()), collider(blade(), triangles, 2 * n), one_sided(one) {
-    // Under the blade, along x; the second row of the triangles lies far away.
-    for (int i = 0; i < n; ++i) rest.push_back({0.2e-3 * (i - sent), 0, -half_z - 0.01e-3});
-    for (int i = 0; i < n; ++i) rest.push_back({0.2e-3 * (i - sent), 50e-3, -half_z});
-    now = rest;
+  // Under the blade, along x; the second row of the triangles lies far away.
+  static std::vector<Vec3> rows() {
+    std::vector<Vec3> x;
+    for (int i = 0; i < n; ++i) x.push_back({0.2e-3 * (i - sent), 0, -half_z - 0.01e-3});
+    for (int i = 0; i < n; ++i) x.push_back({0.2e-3 * (i - sent), 50e-3, -half_z});
+    return x;
+  }
+  explicit Row(bool one)
+      : rest(rows()), now(rest), triangles(strip()), collider(blade(), triangles, rest), one_sided(one) {
     mesh.build(rest, triangles);
   }
   std::vector<Proximity> detect() {

@@ -10,19 +10,28 @@
 
 namespace insula {
 
+namespace {
+constexpr std::size_t most_edge_points = 2000;  // that the pieces of one link list in a step
+}
+
 VertexCollider::VertexCollider(const std::vector<ConvexPiece>& pieces, const std::vector<std::array<int, 3>>& triangles,
-                               int vertices) {
+                               std::span<const Vec3> rest)
+    : edges_(rest, triangles) {
   for (const ConvexPiece& p : pieces) {
     pieces_.push_back(rounded(p));
     boxes_.emplace_back();
     for (const Vec3& c : pieces_.back().core) boxes_.back().add(c);
   }
-  const std::size_t n = std::size_t(vertices);
+  const std::size_t n = rest.size();
   triangle_of_.assign(n, {-1, 0});
   for (int t = 0; t < int(triangles.size()); ++t)
     for (int k = 0; k < 3; ++k)
       if (auto& own = triangle_of_[std::size_t(triangles[std::size_t(t)][std::size_t(k)])]; own[0] < 0) own = {t, k};
-  seen_.reserve(n);
+  const std::size_t most = most_edge_points + 3 * StretchedEdges::per_edge;
+  seen_.reserve(n + most);
+  edge_points_.reserve(most);
+  kept_points_.reserve(most);
+  next_kept_points_.reserve(most);
   near_pieces_.reserve(pieces.size());
   reset();
 }
@@ -30,6 +39,7 @@ VertexCollider::VertexCollider(const std::vector<ConvexPiece>& pieces, const std
 void VertexCollider::reset() {
   kept_out_.assign(triangle_of_.size(), Vec3::Zero());
   marked_.assign(triangle_of_.size(), 0);
+  kept_points_.clear();
   side_.setZero();
 }
 
@@ -50,8 +60,9 @@ VertexCollider::Near VertexCollider::nearest(const RoundedPiece& piece, const Po
   return {distance - piece.radius - offset, distance > 1e-7 ? Vec3(pose.q * (d / distance)) : Vec3(Vec3::Zero())};
 }
 
-// Lists in seen_ the vertices that any piece may approach.
-void VertexCollider::list_vertices(const Step& step) {
+// Lists in seen_ the vertices that any piece may approach, and the points of stretched edges there.
+void VertexCollider::list_points(const Step& step) {
+  const bool thin_wall = step.settings.offset > 0;
   for (const RoundedPiece& p : pieces_) {
     Aabb box;
     double lever = 0;
@@ -67,10 +78,36 @@ void VertexCollider::list_vertices(const Step& step) {
         marked_[std::size_t(v)] = 1;
         seen_.push_back(v);
       }
+      if (thin_wall && edge_points_.size() < most_edge_points) edges_.append_points(step.mesh, t, edge_points_);
     });
   }
   std::sort(seen_.begin(), seen_.end());
   for (const int v : seen_) marked_[std::size_t(v)] = 0;
+  std::sort(edge_points_.begin(), edge_points_.end());
+  edge_points_.erase(std::unique(edge_points_.begin(), edge_points_.end()), edge_points_.end());
+  for (const int p : edge_points_) seen_.push_back(int(triangle_of_.size()) + p);
+  edge_points_.clear();
+}
+
+VertexCollider::WallPoint VertexCollider::wall_point(const CollisionMesh& mesh, int point) const {
+  WallPoint at;
+  if (const std::size_t v = std::size_t(point); v < triangle_of_.size()) {
+    at.triangle = triangle_of_[v][0];
+    at.bary[triangle_of_[v][1]] = 1;
+    at.start = mesh.vertex(point);
+    at.motion = mesh.free(point);
+    return at;
+  }
+  const auto [triangle, bary] = StretchedEdges::place(point - int(triangle_of_.size()));
+  return {triangle, bary, mesh.point(triangle, bary), mesh.free_at(triangle, bary)};
+}
+
+// Direction in which a point was kept out in the last step, frame of the pieces; zero: none.
+Vec3 VertexCollider::kept_out(int point) const {
+  if (std::size_t(point) < kept_out_.size()) return kept_out_[std::size_t(point)];
+  const auto at = std::lower_bound(kept_points_.begin(), kept_points_.end(), point,
+                                   [](const KeptPoint& k, int wanted) { return k.point < wanted; });
+  return at != kept_points_.end() && at->point == point ? at->direction : Vec3(Vec3::Zero());
 }
 
 // Lists in near_pieces_ the pieces that are near a vertex or may come near it. Returns whether there are any.
@@ -154,23 +191,22 @@ bool VertexCollider::touch_of(const Step& step, const Vec3& x0, const Vec3& u, d
   return true;
 }
 
-void VertexCollider::add_contact(const Step& step, int v, const Touch& touch, std::vector<Proximity>& out) const {
-  const auto& own = triangle_of_[std::size_t(v)];
-  if (own[0] < 0) return;
-  const Vec3 x0 = step.mesh.vertex(v);
+void VertexCollider::add_contact(const Step& step, int point, const WallPoint& at, const Touch& touch,
+                                 std::vector<Proximity>& out) {
+  if (at.triangle < 0) return;
   Proximity c;
   c.piece = touch.piece;
-  c.vertex = v;
-  c.triangle = own[0];
-  c.bary[own[1]] = 1;
+  c.vertex = point;
+  c.triangle = at.triangle;
+  c.bary = at.bary;
   c.time = touch.when;
   c.normal = touch.near.normal;
   c.gap = touch.near.clear;
-  c.point = x0 + touch.when * step.mesh.free(v);
+  c.point = at.start + touch.when * at.motion;
   const Pose pose = touch.when > 0 ? displaced(step.start, touch.when * step.motion) : step.start;
   c.local = pose.q.conjugate() * (c.point - pose.p);
   c.start_gap = c.gap;
-  if (touch.when > 0) c.start_gap += c.normal.dot(step.start.apply(c.local) - x0);
+  if (touch.when > 0) c.start_gap += c.normal.dot(step.start.apply(c.local) - at.start);
   // A vertex that comes from the other side of a moving wall is left to the next step.
   if (touch.when > 0 && c.start_gap < 0) return;
   c.start_gap = std::max(c.start_gap, -step.settings.max_correction);
@@ -182,22 +218,27 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
   if (mesh.tree().empty()) return;
   const Vec6 motion = displacement(start, free);
   const Step step{mesh, start, free, settings, motion, motion.tail<3>().norm()};
-  list_vertices(step);
+  list_points(step);
   Vec3 pressed = Vec3::Zero();
   const Mat3 to_local = start.q.toRotationMatrix().transpose();
-  for (const int v : seen_) {
-    Vec3& memory = kept_out_[std::size_t(v)];
-    const Vec3 x0 = mesh.vertex(v), u = mesh.free(v), local = to_local * (x0 - start.p);
+  next_kept_points_.clear();
+  for (const int point : seen_) {
+    const WallPoint at = wall_point(mesh, point);
+    const Vec3 u = at.motion, local = to_local * (at.start - start.p);
     const double speed = (motion.head<3>() - u).norm() + step.turn * (local.norm() + u.norm());
-    if (!list_pieces(step, local, speed)) {
-      memory.setZero();  // vertices that no piece approaches are skipped
-      continue;
+    const bool vertex = std::size_t(point) < kept_out_.size();
+    Vec3 memory = Vec3::Zero();  // points that no piece approaches are skipped
+    if (list_pieces(step, local, speed)) {
+      memory = kept_out(point);
+      if (Touch touch; touch_of(step, at.start, u, speed, memory, touch)) {
+        if (vertex && touch.near.clear < 0.1 * settings.alarm) pressed += memory;
+        add_contact(step, point, at, touch, out);
+      }
     }
-    Touch touch;
-    if (!touch_of(step, x0, u, speed, memory, touch)) continue;
-    if (touch.near.clear < 0.1 * settings.alarm) pressed += memory;
-    add_contact(step, v, touch, out);
+    if (vertex) kept_out_[std::size_t(point)] = memory;
+    else if (!memory.isZero(0)) next_kept_points_.push_back({point, memory});
   }
+  kept_points_.swap(next_kept_points_);
   seen_.clear();
   // The side from which most vertices press. It is determined when the blade reaches the body, and stays.
   if (side_.norm() < 0.95 && !pressed.isZero(0)) side_ = (0.9 * side_ + 0.1 * pressed.normalized()).eval();

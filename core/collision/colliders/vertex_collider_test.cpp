@@ -64,7 +64,7 @@ double end_gap(const Proximity& c, const Sheet& sheet, const Vec3& motion) {
 TEST(VertexCollider, EveryVertexNearABallHasItsExactGapAndNoOtherHasOne) {
   const Sheet sheet;
   const double radius = 0.8e-3, alarm = 0.2e-3;
-  VertexCollider collider({{"ball", {Vec3(0.1e-3, 0, 0)}, radius}}, sheet.triangles, sheet.count());
+  VertexCollider collider({{"ball", {Vec3(0.1e-3, 0, 0)}, radius}}, sheet.triangles, sheet.rest);
   const Vec3 centre(0.07e-3, -0.11e-3, 0.9e-3);  // the ball's own centre stands 0.1 mm off its frame
   std::vector<Proximity> found;
   collider.detect(sheet.mesh, at(centre - Vec3(0.1e-3, 0, 0)), at(centre - Vec3(0.1e-3, 0, 0)), settings(alarm), found);
@@ -90,7 +90,7 @@ TEST(VertexCollider, EveryVertexNearABallHasItsExactGapAndNoOtherHasOne) {
 
 TEST(VertexCollider, ASheetBetweenClosingJawsIsHeldFromBothSides) {
   const Sheet sheet;
-  VertexCollider upper(jaw(), sheet.triangles, sheet.count()), lower(jaw(), sheet.triangles, sheet.count());
+  VertexCollider upper(jaw(), sheet.triangles, sheet.rest), lower(jaw(), sheet.triangles, sheet.rest);
   std::vector<Proximity> above, below;
   // From well open to jaws that overlap the wall by nearly all its thickness: sides never change.
   for (double face = 0.4e-3; face > 0.02e-3; face -= 0.02e-3) {
@@ -121,7 +121,7 @@ TEST(VertexCollider, ASheetBetweenClosingJawsIsHeldFromBothSides) {
 
 TEST(VertexCollider, AFastBladeMeetsTheSheetItWouldHavePassed) {
   const Sheet sheet;
-  VertexCollider collider(jaw(), sheet.triangles, sheet.count());
+  VertexCollider collider(jaw(), sheet.triangles, sheet.rest);
   for (const double swept : {3e-3, 8e-3, 30e-3}) {
     collider.reset();
     const Vec3 from(0.1e-3, 0, half_z + 1.5e-3), motion(0, 0, -swept);
@@ -157,7 +157,7 @@ TEST(VertexCollider, AFastSheetMeetsTheBladeAtRest) {
   Sheet sheet;
   for (Vec3& u : sheet.free) u = Vec3(0, 0, 5e-3);
   sheet.update();
-  VertexCollider collider(jaw(), sheet.triangles, sheet.count());
+  VertexCollider collider(jaw(), sheet.triangles, sheet.rest);
   std::vector<Proximity> found;
   collider.detect(sheet.mesh, at({0, 0, half_z + 2e-3}), at({0, 0, half_z + 2e-3}), settings(), found);
   ASSERT_GT(found.size(), 40u);
@@ -171,7 +171,7 @@ TEST(VertexCollider, AFastSheetMeetsTheBladeAtRest) {
 
 TEST(VertexCollider, WhatGoesAwayOrPassesBesideGivesNothing) {
   const Sheet sheet;
-  VertexCollider collider(jaw(), sheet.triangles, sheet.count());
+  VertexCollider collider(jaw(), sheet.triangles, sheet.rest);
   std::vector<Proximity> found;
   const Vec3 above(0, 0, half_z + 1e-3), beside(8e-3, 0, half_z + 1e-3);
   collider.detect(sheet.mesh, at(above), at(above + Vec3(0, 0, 5e-3)), settings(), found);
@@ -184,7 +184,7 @@ TEST(VertexCollider, WhatGoesAwayOrPassesBesideGivesNothing) {
 // through it.
 TEST(VertexCollider, AVertexInsideTheCoreGoesBackTheWayItCame) {
   Sheet sheet;
-  VertexCollider collider(jaw(), sheet.triangles, sheet.count());
+  VertexCollider collider(jaw(), sheet.triangles, sheet.rest);
   const int v = sheet.count() / 2;
   const Pose pose = at({0, 0, half_z + 0.2e-3});
   const auto contact_of = [&](double z) {
@@ -214,7 +214,7 @@ TEST(VertexCollider, AVertexInsideTheCoreGoesBackTheWayItCame) {
 
 TEST(VertexCollider, TheMemoryTurnsWithThePieces) {
   Sheet sheet;
-  VertexCollider collider(jaw(), sheet.triangles, sheet.count());
+  VertexCollider collider(jaw(), sheet.triangles, sheet.rest);
   const int v = sheet.count() / 2;
   std::vector<Proximity> found;
   const Pose pose = at({0, 0, half_z + 0.2e-3});
@@ -240,7 +240,7 @@ TEST(VertexCollider, OfSeveralPiecesTheNearestHasTheVertex) {
   const Sheet sheet;
   const double r = 0.5e-3;
   const Vec3 a(-0.6e-3, 0, r + wall + 0.05e-3), b(0.6e-3, 0, r + wall + 0.1e-3);
-  VertexCollider collider({{"a", {a}, r}, {"b", {b}, r}}, sheet.triangles, sheet.count());
+  VertexCollider collider({{"a", {a}, r}, {"b", {b}, r}}, sheet.triangles, sheet.rest);
   std::vector<Proximity> found;
   collider.detect(sheet.mesh, Pose{}, Pose{}, settings(), found);
   ASSERT_GT(found.size(), 10u);
@@ -257,7 +257,7 @@ TEST(VertexCollider, OfSeveralPiecesTheNearestHasTheVertex) {
 // A jaw that slides along the wall: every vertex that stays near keeps the name and the tangent of its contact.
 TEST(VertexCollider, KeysLastAsLongAsTheVertexIsNear) {
   const Sheet sheet;
-  VertexCollider collider(jaw(), sheet.triangles, sheet.count());
+  VertexCollider collider(jaw(), sheet.triangles, sheet.rest);
   ContactSelection selection;
   selection.reserve(2048, 200);
   std::uint64_t next = 0;
@@ -289,7 +289,7 @@ TEST(VertexCollider, KeysLastAsLongAsTheVertexIsNear) {
 TEST(VertexCollider, SameInputSameBits) {
   const Sheet sheet;
   const auto run = [&] {
-    VertexCollider collider(jaw(), sheet.triangles, sheet.count());
+    VertexCollider collider(jaw(), sheet.triangles, sheet.rest);
     std::vector<Proximity> found;
     for (int i = 0; i < 10; ++i) {
       const Pose start{Vec3(0, 0, half_z + 1e-3 - 0.1e-3 * i), from_rotation_vector(Vec3(0.02 * i, 0.1, 0))};

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points within stretched edges: where they are, how far apart, and that a blade does not slip between the ends of an
+// edge.
+#include "core/collision/colliders/stretched_edges.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "core/collision/colliders/vertex_collider.h"
+#include "core/collision/shapes/shapes_for_test.h"
+
+namespace insula {
+namespace {
+
+constexpr double edge = 0.5e-3;  // of the sheet's squares at rest, m
+
+/// A flat square sheet in z = 0 whose vertices may be moved.
+struct Sheet {
+  std::vector<Vec3> rest, now, free;
+  std::vector<std::array<int, 3>> triangles;
+  CollisionMesh mesh;
+  explicit Sheet(int n = 9) {
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) rest.push_back(edge * Vec3(i - 0.5 * (n - 1), j - 0.5 * (n - 1), 0));
+    for (int j = 0; j + 1 < n; ++j)
+      for (int i = 0; i + 1 < n; ++i) {
+        const int a = j * n + i;
+        triangles.push_back({a, a + 1, a + n + 1});
+        triangles.push_back({a, a + n + 1, a + n});
+      }
+    now = rest;
+    free.assign(rest.size(), Vec3::Zero());
+    mesh.build(rest, triangles);
+    update();
+  }
+  void update() { mesh.update(now, free); }
+  int middle() const { return int(rest.size()) / 2; }
+  /// Draws the middle vertex out of the sheet.
+  void draw_out(double height) {
+    now[std::size_t(middle())].z() = height;
+    update();
+  }
+  std::vector<int> points() const {
+    const StretchedEdges edges(rest, triangles);
+    std::vector<int> all;
+    for (int t = 0; t < mesh.triangle_count(); ++t) edges.append_points(mesh, t, all);
+    return all;
+  }
+};
+
+TEST(StretchedEdges, AWallThatIsHardlyStretchedHasNone) {
+  Sheet sheet;
+  EXPECT_TRUE(sheet.points().empty());
+  for (std::size_t i = 0; i < sheet.now.size(); ++i) sheet.now[i] = 1.7 * sheet.rest[i];
+  sheet.update();
+  EXPECT_TRUE(sheet.points().empty());
+}
+
+// A wall stretched alike everywhere: all edges have 1, 3 or 7 points, and both triangles of an edge give the same ones.
+TEST(StretchedEdges, BothTrianglesOfAnEdgeGiveItsPointsEvenlySpaced) {
+  for (const auto& [stretch, count] : {std::pair{2.0, 1}, {5.0, 3}, {9.0, 7}}) {
+    Sheet sheet;
+    for (std::size_t i = 0; i < sheet.now.size(); ++i) sheet.now[i] = stretch * sheet.rest[i];
+    sheet.update();
+    std::map<std::pair<int, int>, std::vector<double>> shares;  // of the edge from its lower vertex
+    std::map<int, int> times;
+    for (const int p : sheet.points()) {
+      const auto [t, bary] = StretchedEdges::place(p);
+      ASSERT_LT(t, sheet.mesh.triangle_count());
+      std::map<int, double> weights;
+      for (int k = 0; k < 3; ++k)
+        if (bary[k] > 0) weights[sheet.triangles[std::size_t(t)][std::size_t(k)]] = bary[k];
+      ASSERT_EQ(weights.size(), 2u);
+      EXPECT_NEAR(weights.begin()->second + weights.rbegin()->second, 1, 1e-15);
+      if (++times[p] == 1)
+        shares[{weights.begin()->first, weights.rbegin()->first}].push_back(weights.rbegin()->second);
+    }
+    std::map<std::pair<int, int>, int> faces;
+    for (const auto& t : sheet.triangles)
+      for (int k = 0; k < 3; ++k) {
+        const int a = t[std::size_t(k)], b = t[std::size_t((k + 1) % 3)];
+        ++faces[{std::min(a, b), std::max(a, b)}];
+      }
+    // The diagonals are longer at rest, but are stretched as much.
+    ASSERT_EQ(shares.size(), faces.size());
+    for (auto& [of, at] : shares) {
+      std::sort(at.begin(), at.end());
+      ASSERT_EQ(int(at.size()), count);
+      for (int i = 0; i < count; ++i) EXPECT_NEAR(at[std::size_t(i)], (i + 1.0) / (count + 1), 1e-15);
+    }
+    for (const auto& [p, n] : times) {
+      const auto [t, bary] = StretchedEdges::place(p);
+      const auto& v = sheet.triangles[std::size_t(t)];
+      int a = -1, b = -1;
+      for (int k = 0; k < 3; ++k)
+        if (bary[k] > 0) (a < 0 ? a : b) = v[std::size_t(k)];
+      EXPECT_EQ(n, (faces[{std::min(a, b), std::max(a, b)}]));
+    }
+  }
+}
+
+// One vertex drawn out of a sheet: its edges alone have points, and those are nowhere farther apart than the limit.
+TEST(StretchedEdges, OnlyEdgesOfADrawnOutVertexHavePoints) {
+  Sheet sheet;
+  sheet.draw_out(3e-3);
+  std::set<int> ends;
+  const auto points = sheet.points();
+  EXPECT_EQ(std::set<int>(points.begin(), points.end()).size(), 6u * 3);
+  for (const int p : points) {
+    const auto [t, bary] = StretchedEdges::place(p);
+    const auto& v = sheet.triangles[std::size_t(t)];
+    bool of_middle = false;
+    for (int k = 0; k < 3; ++k) of_middle |= bary[k] > 0 && v[std::size_t(k)] == sheet.middle();
+    EXPECT_TRUE(of_middle);
+  }
+}
+
+std::vector<ConvexPiece> box(const Vec3& half) {
+  ConvexPiece p{"box", {}, 0};
+  for (int i = 0; i < 8; ++i)
+    p.points.push_back({i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z()});
+  return {p};
+}
+
+// A blade lies beside a drawn-out vertex's edges, between their ends. The vertices alone would let it in. Each point
+// that faces the blade's plane has the gap of a point before a plane.
+TEST(StretchedEdges, ABladeBetweenTheEndsOfAnEdgeTouchesIt) {
+  constexpr double half_wall = 0.15e-3, half_x = 0.4e-3, face_at = 0.3e-3;
+  Sheet sheet;
+  sheet.draw_out(4e-3);
+  const Pose pose{Vec3(face_at + half_x, 0, 2e-3), Quat::Identity()};
+  VertexCollider collider(box({half_x, 2e-3, 0.7e-3}), sheet.triangles, sheet.rest);
+  const auto found_with = [&](double offset) {
+    std::vector<Proximity> found;
+    collider.reset();
+    collider.detect(sheet.mesh, pose, pose, {.alarm = 0.3e-3, .max_correction = 1e-3, .offset = offset}, found);
+    return found;
+  };
+  EXPECT_TRUE(found_with(0).empty()) << "the surface of a solid has its triangles' contacts";
+  const auto found = found_with(half_wall);
+  ASSERT_FALSE(found.empty());
+  int faced = 0;
+  for (const Proximity& c : found) {
+    EXPECT_GE(c.vertex, int(sheet.rest.size()));
+    const Vec3 x = sheet.mesh.point(c.triangle, c.bary);
+    EXPECT_LT((c.point - x).norm(), 1e-15);
+    if (std::abs(x.z() - pose.p.z()) > 0.5e-3) continue;  // the blade's edges are round
+    ++faced;
+    EXPECT_NEAR(c.normal.x(), 1, 1e-9);
+    EXPECT_NEAR(c.gap, face_at - x.x() - half_wall, 1e-9);
+  }
+  EXPECT_GE(faced, 6);
+}
+
+// A point that a blade has kept out goes back to its side when the blade went over it, as a vertex does.
+TEST(StretchedEdges, APointRemembersItsSide) {
+  Sheet sheet;
+  sheet.draw_out(4e-3);
+  VertexCollider collider(box({0.4e-3, 2e-3, 0.7e-3}), sheet.triangles, sheet.rest);
+  const ToolContactSettings settings{.alarm = 0.3e-3, .max_correction = 1e-3, .offset = 0.15e-3};
+  int seen = 0;
+  std::set<int> known;
+  for (const double x : {0.65e-3, 0.45e-3, 0.1e-3, -0.2e-3}) {
+    std::vector<Proximity> found;
+    const Pose pose{Vec3(x, 0, 2e-3), Quat::Identity()};
+    collider.detect(sheet.mesh, pose, pose, settings, found);
+    for (const Proximity& c : found) {
+      if (!known.count(c.vertex) || std::abs(c.point.z() - pose.p.z()) > 0.4e-3) continue;
+      ++seen;
+      EXPECT_GT(c.normal.x(), 0.9) << x;
+      if (x < 0.5e-3) EXPECT_LT(c.gap, 0);
+    }
+    if (x == 0.65e-3)
+      for (const Proximity& c : found) known.insert(c.vertex);
+  }
+  EXPECT_GE(seen, 6);
+}
+
+}  // namespace
+}  // namespace insula
