@@ -171,7 +171,9 @@ TEST(StretchedEdges, APointRemembersItsSide) {
       if (!known.count(c.vertex) || std::abs(c.point.z() - pose.p.z()) > 0.4e-3) continue;
       ++seen;
       EXPECT_GT(c.normal.x(), 0.9) << x;
-      if (x < 0.5e-3) EXPECT_LT(c.gap, 0);
+      if (x < 0.5e-3) {
+        EXPECT_LT(c.gap, 0);
+      }
     }
     if (x == 0.65e-3)
       for (const Proximity& c : found) known.insert(c.vertex);
