@@ -78,6 +78,7 @@ def build(case, work):
     name_branches(case, artery, folder)
     set_variables(case, folder)
     add_to_tray(case, folder)
+    set_jaw_contacts(case, folder)
 
 
 def share_lobes(case, folder, work):
@@ -134,6 +135,18 @@ def add_to_tray(case, folder):
         text = text.replace('<clip id="%s"' % first, line + '<clip id="%s"' % first)
         text = re.sub(r'(clips="|between="[^"]*?)\b%s\b' % first, lambda m: m[1] + name + " " + first, text)
         first = name
+    path.write_text(text, encoding="utf-8")
+
+
+def set_jaw_contacts(case, folder):
+    """Most contacts of a jaw with the wall, where those of the builder are not enough."""
+    if "jaw_contacts" not in case:
+        return
+    path = folder / "field.xml"
+    text, count = re.subn(r'(<contact id="blades"[^>]*max_contacts=")\d+', r"\g<1>%d" % case["jaw_contacts"],
+                          path.read_text(encoding="utf-8"))
+    if count != 1:
+        raise SystemExit("field.xml has no contact of blades")
     path.write_text(text, encoding="utf-8")
 
 
