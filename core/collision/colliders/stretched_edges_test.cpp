@@ -9,34 +9,16 @@
 #include <map>
 #include <set>
 
+#include "core/collision/colliders/sheet_for_test.h"
 #include "core/collision/colliders/vertex_collider.h"
 #include "core/collision/shapes/shapes_for_test.h"
 
 namespace insula {
 namespace {
 
-constexpr double edge = 0.5e-3;  // of the sheet's squares at rest, m
-
-/// A flat square sheet in z = 0 whose vertices may be moved.
-struct Sheet {
-  std::vector<Vec3> rest, now, free;
-  std::vector<std::array<int, 3>> triangles;
-  CollisionMesh mesh;
-  explicit Sheet(int n = 9) {
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) rest.push_back(edge * Vec3(i - 0.5 * (n - 1), j - 0.5 * (n - 1), 0));
-    for (int j = 0; j + 1 < n; ++j)
-      for (int i = 0; i + 1 < n; ++i) {
-        const int a = j * n + i;
-        triangles.push_back({a, a + 1, a + n + 1});
-        triangles.push_back({a, a + n + 1, a + n});
-      }
-    now = rest;
-    free.assign(rest.size(), Vec3::Zero());
-    mesh.build(rest, triangles);
-    update();
-  }
-  void update() { mesh.update(now, free); }
+/// A sheet with squares of 0.5 mm whose vertices may be moved.
+struct Sheet : test::Sheet {
+  Sheet() : test::Sheet(9, 0.5e-3) {}
   int middle() const { return int(rest.size()) / 2; }
   /// Draws the middle vertex out of the sheet.
   void draw_out(double height) {

@@ -8,34 +8,14 @@
 #include <set>
 
 #include "core/collision/colliders/contact_selection.h"
+#include "core/collision/colliders/sheet_for_test.h"
 #include "core/collision/shapes/shapes_for_test.h"
 #include "core/testing/held.h"
 
 namespace insula {
 namespace {
 
-/// A flat square sheet in z = 0, n x n vertices `spacing` apart, centred.
-struct Sheet {
-  std::vector<Vec3> rest, now, free;
-  std::vector<std::array<int, 3>> triangles;
-  CollisionMesh mesh;
-  explicit Sheet(int n = 21, double spacing = 0.25e-3) {
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) rest.push_back(spacing * Vec3(i - 0.5 * (n - 1), j - 0.5 * (n - 1), 0));
-    for (int j = 0; j + 1 < n; ++j)
-      for (int i = 0; i + 1 < n; ++i) {
-        const int a = j * n + i;
-        triangles.push_back({a, a + 1, a + n + 1});
-        triangles.push_back({a, a + n + 1, a + n});
-      }
-    now = rest;
-    free.assign(rest.size(), Vec3::Zero());
-    mesh.build(rest, triangles);
-    update();
-  }
-  void update() { mesh.update(now, free); }
-  int count() const { return int(rest.size()); }
-};
+using test::Sheet;
 
 constexpr double half_x = 1.5e-3, half_y = 1e-3, half_z = 0.5e-3;  // of a jaw
 
