@@ -2,6 +2,7 @@
 // Blades on the surface of a bulky body: what wraps about a blade's edge goes back to the blade's front.
 #include <gtest/gtest.h>
 
+#include "core/collision/colliders/sheet_for_test.h"
 #include "core/collision/colliders/vertex_collider.h"
 #include "core/testing/held.h"
 
@@ -20,12 +21,7 @@ struct Row {
   bool one_sided;
   static constexpr int n = 13, sent = n / 2;
 
-  static std::vector<ConvexPiece> blade() {
-    ConvexPiece p{"blade", {}, 0};
-    for (int i = 0; i < 8; ++i)
-      p.points.push_back({i & 1 ? half_x : -half_x, i & 2 ? half_y : -half_y, i & 4 ? half_z : -half_z});
-    return {p};
-  }
+  static std::vector<ConvexPiece> blade() { return {test::box_piece(half_x, half_y, half_z)}; }
   static std::vector<std::array<int, 3>> strip() {
     std::vector<std::array<int, 3>> t;
     for (int i = 0; i + 1 < n; ++i) t.push_back({i, i + 1, n + i});

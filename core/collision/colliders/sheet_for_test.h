@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A flat square sheet as a collision mesh, for tests of colliders.
+// A flat square sheet as a collision mesh and a box as a piece of a tool, for tests of colliders.
 #pragma once
 #include <array>
 #include <vector>
 
 #include "core/collision/search/collision_mesh.h"
+#include "core/model/tools/tool_model.h"
 
 namespace insula::test {
 
@@ -30,5 +31,13 @@ struct Sheet {
   void update() { mesh.update(now, free); }
   int count() const { return int(rest.size()); }
 };
+
+/// Centred, aligned with the axes; half its extents, m.
+inline ConvexPiece box_piece(double half_x, double half_y, double half_z) {
+  ConvexPiece p{"box", {}, 0};
+  for (int i = 0; i < 8; ++i)
+    p.points.push_back({i & 1 ? half_x : -half_x, i & 2 ? half_y : -half_y, i & 4 ? half_z : -half_z});
+  return p;
+}
 
 }  // namespace insula::test

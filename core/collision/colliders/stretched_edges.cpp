@@ -3,7 +3,6 @@
 #include "core/collision/colliders/stretched_edges.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace insula {
 namespace {

@@ -11,7 +11,6 @@
 
 #include "core/collision/colliders/sheet_for_test.h"
 #include "core/collision/colliders/vertex_collider.h"
-#include "core/collision/shapes/shapes_for_test.h"
 
 namespace insula {
 namespace {
@@ -30,6 +29,14 @@ struct Sheet : test::Sheet {
     std::vector<int> all;
     for (int t = 0; t < mesh.triangle_count(); ++t) edges.append_points(mesh, t, all);
     return all;
+  }
+  /// The two vertices between which a point lies, and its weights there.
+  std::map<int, double> ends_of(int point) const {
+    const auto [t, bary] = StretchedEdges::place(point);
+    std::map<int, double> weights;
+    for (int k = 0; k < 3; ++k)
+      if (bary[k] > 0) weights[triangles[std::size_t(t)][std::size_t(k)]] = bary[k];
+    return weights;
   }
 };
 
@@ -50,11 +57,8 @@ TEST(StretchedEdges, BothTrianglesOfAnEdgeGiveItsPointsEvenlySpaced) {
     std::map<std::pair<int, int>, std::vector<double>> shares;  // of the edge from its lower vertex
     std::map<int, int> times;
     for (const int p : sheet.points()) {
-      const auto [t, bary] = StretchedEdges::place(p);
-      ASSERT_LT(t, sheet.mesh.triangle_count());
-      std::map<int, double> weights;
-      for (int k = 0; k < 3; ++k)
-        if (bary[k] > 0) weights[sheet.triangles[std::size_t(t)][std::size_t(k)]] = bary[k];
+      ASSERT_LT(StretchedEdges::place(p).triangle, sheet.mesh.triangle_count());
+      const std::map<int, double> weights = sheet.ends_of(p);
       ASSERT_EQ(weights.size(), 2u);
       EXPECT_NEAR(weights.begin()->second + weights.rbegin()->second, 1, 1e-15);
       if (++times[p] == 1)
@@ -74,37 +78,19 @@ TEST(StretchedEdges, BothTrianglesOfAnEdgeGiveItsPointsEvenlySpaced) {
       for (int i = 0; i < count; ++i) EXPECT_NEAR(at[std::size_t(i)], (i + 1.0) / (count + 1), 1e-15);
     }
     for (const auto& [p, n] : times) {
-      const auto [t, bary] = StretchedEdges::place(p);
-      const auto& v = sheet.triangles[std::size_t(t)];
-      int a = -1, b = -1;
-      for (int k = 0; k < 3; ++k)
-        if (bary[k] > 0) (a < 0 ? a : b) = v[std::size_t(k)];
-      EXPECT_EQ(n, (faces[{std::min(a, b), std::max(a, b)}]));
+      const std::map<int, double> ends = sheet.ends_of(p);
+      EXPECT_EQ(n, (faces[{ends.begin()->first, ends.rbegin()->first}]));
     }
   }
 }
 
-// One vertex drawn out of a sheet: its edges alone have points, and those are nowhere farther apart than the limit.
+// One vertex drawn out of a sheet: its edges alone have points.
 TEST(StretchedEdges, OnlyEdgesOfADrawnOutVertexHavePoints) {
   Sheet sheet;
   sheet.draw_out(3e-3);
-  std::set<int> ends;
   const auto points = sheet.points();
   EXPECT_EQ(std::set<int>(points.begin(), points.end()).size(), 6u * 3);
-  for (const int p : points) {
-    const auto [t, bary] = StretchedEdges::place(p);
-    const auto& v = sheet.triangles[std::size_t(t)];
-    bool of_middle = false;
-    for (int k = 0; k < 3; ++k) of_middle |= bary[k] > 0 && v[std::size_t(k)] == sheet.middle();
-    EXPECT_TRUE(of_middle);
-  }
-}
-
-std::vector<ConvexPiece> box(const Vec3& half) {
-  ConvexPiece p{"box", {}, 0};
-  for (int i = 0; i < 8; ++i)
-    p.points.push_back({i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z()});
-  return {p};
+  for (const int p : points) EXPECT_TRUE(sheet.ends_of(p).count(sheet.middle()));
 }
 
 // A blade lies beside a drawn-out vertex's edges, between their ends. The vertices alone would let it in. Each point
@@ -114,7 +100,7 @@ TEST(StretchedEdges, ABladeBetweenTheEndsOfAnEdgeTouchesIt) {
   Sheet sheet;
   sheet.draw_out(4e-3);
   const Pose pose{Vec3(face_at + half_x, 0, 2e-3), Quat::Identity()};
-  VertexCollider collider(box({half_x, 2e-3, 0.7e-3}), sheet.triangles, sheet.rest);
+  VertexCollider collider({test::box_piece(half_x, 2e-3, 0.7e-3)}, sheet.triangles, sheet.rest);
   const auto found_with = [&](double offset) {
     std::vector<Proximity> found;
     collider.reset();
@@ -141,7 +127,7 @@ TEST(StretchedEdges, ABladeBetweenTheEndsOfAnEdgeTouchesIt) {
 TEST(StretchedEdges, APointRemembersItsSide) {
   Sheet sheet;
   sheet.draw_out(4e-3);
-  VertexCollider collider(box({0.4e-3, 2e-3, 0.7e-3}), sheet.triangles, sheet.rest);
+  VertexCollider collider({test::box_piece(0.4e-3, 2e-3, 0.7e-3)}, sheet.triangles, sheet.rest);
   const ToolContactSettings settings{.alarm = 0.3e-3, .max_correction = 1e-3, .offset = 0.15e-3};
   int seen = 0;
   std::set<int> known;

@@ -19,12 +19,7 @@ using test::Sheet;
 
 constexpr double half_x = 1.5e-3, half_y = 1e-3, half_z = 0.5e-3;  // of a jaw
 
-std::vector<ConvexPiece> jaw() {
-  ConvexPiece p{"jaw", {}, 0};
-  for (int i = 0; i < 8; ++i)
-    p.points.push_back({i & 1 ? half_x : -half_x, i & 2 ? half_y : -half_y, i & 4 ? half_z : -half_z});
-  return {p};
-}
+std::vector<ConvexPiece> jaw() { return {test::box_piece(half_x, half_y, half_z)}; }
 Pose at(const Vec3& p) { return {p, Quat::Identity()}; }
 
 constexpr double wall = 0.15e-3;  // half the wall's thickness
