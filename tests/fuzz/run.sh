@@ -15,13 +15,11 @@ command -v ccache >/dev/null && cache=ccache
 flags="-std=c++20 -O1 -g1 -fno-omit-frame-pointer"
 flags="$flags -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined"
 flags="$flags -I$source_dir -I$2/generated/abi -isystem /usr/include/eigen3 -DFMT_HEADER_ONLY"
-folders="core/base core/params core/registry core/scene core/xml tests/fuzz"
+folders="core/base core/params core/registry core/scene core/xml platform/linux/base tests/fuzz"
 target=$build_dir/loader_fuzz
 
-if [ ! -x "$target" ] || [ -n "$(find "$source_dir/core/base" "$source_dir/core/params" "$source_dir/core/registry" \
-    "$source_dir/core/scene" "$source_dir/core/xml" \
-    "$source_dir/tests/fuzz" -newer "$target" \( -name '*.h' -o -name '*.cpp' \) | \
-    head -1)" ]; then
+if [ ! -x "$target" ] || [ -n "$(cd "$source_dir" &&
+    find $folders -newer "$target" \( -name '*.h' -o -name '*.cpp' \) | head -1)" ]; then
   echo "building the fuzz target"
   if ! echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' |
       clang++ -x c++ -fsanitize=fuzzer - -o "$build_dir/probe" 2>/dev/null; then
@@ -31,7 +29,7 @@ if [ ! -x "$target" ] || [ -n "$(find "$source_dir/core/base" "$source_dir/core/
   rm -f "$build_dir"/objects/*.o
   # A folder is one unit of compilation, since most of the time goes into reading headers.
   for folder in $folders; do
-    unit=$build_dir/objects/$(basename "$folder")
+    unit=$build_dir/objects/$(echo "$folder" | tr / _)
     ls "$source_dir/$folder"/*.cpp | grep -v '_test\.cpp$' | sed 's/.*/#include "&"/' >"$unit.cpp"
     printf '%s %s\n' "$unit.cpp" "$unit.o"
   done | xargs -P 2 -n 2 sh -c "$cache clang++ $flags -c \"\$0\" -o \"\$1\" || exit 255"

@@ -11,6 +11,7 @@
 
 #include "core/collision/colliders/sheet_for_test.h"
 #include "core/collision/colliders/vertex_collider.h"
+#include "core/testing/held.h"
 
 namespace insula {
 namespace {
@@ -75,7 +76,9 @@ TEST(StretchedEdges, BothTrianglesOfAnEdgeGiveItsPointsEvenlySpaced) {
     for (auto& [of, at] : shares) {
       std::sort(at.begin(), at.end());
       ASSERT_EQ(int(at.size()), count);
-      for (int i = 0; i < count; ++i) EXPECT_NEAR(at[std::size_t(i)], (i + 1.0) / (count + 1), 1e-15);
+      for (int i = 0; i < count; ++i)
+        EXPECT_TRUE(test::held("places of points within stretched edges",
+                               std::abs(at[std::size_t(i)] - (i + 1.0) / (count + 1)), 1, 1e-15));
     }
     for (const auto& [p, n] : times) {
       const std::map<int, double> ends = sheet.ends_of(p);
@@ -118,7 +121,8 @@ TEST(StretchedEdges, ABladeBetweenTheEndsOfAnEdgeTouchesIt) {
     if (std::abs(x.z() - pose.p.z()) > 0.5e-3) continue;  // the blade's edges are round
     ++faced;
     EXPECT_NEAR(c.normal.x(), 1, 1e-9);
-    EXPECT_NEAR(c.gap, face_at - x.x() - half_wall, 1e-9);
+    EXPECT_TRUE(test::held("gaps of a blade between an edge's ends, m",
+                           std::abs(c.gap - (face_at - x.x() - half_wall)), 1, 1e-9));
   }
   EXPECT_GE(faced, 6);
 }
