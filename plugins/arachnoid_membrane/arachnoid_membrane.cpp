@@ -79,47 +79,49 @@ BilinearPatch ArachnoidMembrane::patch(const Piece& piece) const {
   return out;
 }
 
-/// From where to where across a piece still spans: all of it, or the half beside the strand that stands.
-std::array<double, 2> ArachnoidMembrane::standing_part(const Piece& piece) const {
-  return {strands->severed(piece.pair.first) ? 0.5 : 0.0, strands->severed(piece.pair.second) ? 0.5 : 1.0};
+/// A piece spans as a whole, or only beside the strand that stands.
+ArachnoidMembrane::Placed ArachnoidMembrane::place(const Piece& piece) const {
+  const BilinearPatch at = patch(piece);
+  return {at, BilinearPatch::Bounds(at), strands->severed(piece.pair.first) ? 0.5 : 0.0,
+          strands->severed(piece.pair.second) ? 0.5 : 1.0};
 }
 
 /// The lowest point of the tool above the patch (side 1), or the highest of it (side -1).
-ArachnoidMembrane::Deepest ArachnoidMembrane::deepest_from(int side, const Piece& piece, const BilinearPatch& patch,
-                                                           const ToolOutline& tool) const {
-  const auto [from, to] = standing_part(piece);
+ArachnoidMembrane::Deepest ArachnoidMembrane::deepest_from(int side, const Placed& piece, const ToolOutline& tool) {
   Deepest out;
   out.gap = infinite;
-  const BilinearPatch::Slab slab(patch);
-  const Vec3 middle = patch.middle();
-  const double radius = patch.radius();
-  for (const ToolOutline::Ball& ball : tool.balls()) {
-    if ((ball.at - middle).norm() > radius + aware + ball.radius) continue;
-    if (slab.least_height(ball.at, side) > std::min(out.gap, aware) + ball.radius) continue;
-    BilinearPatch::Foot foot;
-    if (!patch.foot(ball.at, foot)) continue;
-    if (foot.s < from || foot.s > to || foot.t < 0 || foot.t > 1 || std::abs(foot.height) > aware + ball.radius)
-      continue;
-    const double gap = side * foot.height - ball.radius;
-    if (gap < out.gap) out = {side, gap, &ball, foot};
+  const auto is_far = [&](const Vec3& at, double spread, double radius) {
+    const double lowest = piece.bounds.least_height(at, side) - spread;
+    return (lowest > 0 && lowest - radius > std::min(out.gap, aware)) ||
+           !piece.bounds.may_have_foot(at, spread, aware + radius);
+  };
+  for (const ToolOutline::Group& group : tool.groups()) {
+    if (is_far(group.at, group.spread, group.radius)) continue;
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      const ToolOutline::Ball& ball = tool.balls()[i];
+      if (is_far(ball.at, 0, ball.radius)) continue;
+      BilinearPatch::Foot foot;
+      if (!piece.patch.foot_parameters(ball.at, foot.s, foot.t) || !piece.spans(foot.s, foot.t)) continue;
+      piece.patch.complete(ball.at, foot);
+      const double gap = side * foot.height - ball.radius;
+      if (std::abs(foot.height) <= aware + ball.radius && gap < out.gap) out = {side, gap, &ball, foot};
+    }
   }
   return out;
 }
 
-ArachnoidMembrane::Deepest ArachnoidMembrane::deepest(const Piece& piece, const BilinearPatch& patch,
-                                                      const ToolOutline& tool, int side) const {
-  if (side != 0) return deepest_from(side, piece, patch, tool);
-  Deepest below = deepest_from(1, piece, patch, tool);
+ArachnoidMembrane::Deepest ArachnoidMembrane::deepest(const Placed& piece, const ToolOutline& tool, int side) {
+  if (side != 0) return deepest_from(side, piece, tool);
+  Deepest below = deepest_from(1, piece, tool);
   if (below.gap > 0) return below;
-  const Deepest above = deepest_from(-1, piece, patch, tool);
+  const Deepest above = deepest_from(-1, piece, tool);
   if (above.gap > 0) return above;
   below.side = 0;
   return below;
 }
 
-void ArachnoidMembrane::touch(const Piece& piece, const BilinearPatch& patch, const ToolOutline& tool,
-                              Tent& tent) const {
-  const Deepest d = deepest(piece, patch, tool, tent.side);
+void ArachnoidMembrane::touch(const Placed& piece, const ToolOutline& tool, Tent& tent) {
+  const Deepest d = deepest(piece, tool, tent.side);
   tent.near = d.ball != nullptr;
   tent.side_now = d.ball ? d.side : 0;
   tent.gap = infinite;
@@ -131,24 +133,22 @@ void ArachnoidMembrane::touch(const Piece& piece, const BilinearPatch& patch, co
 }
 
 /// Where a cutting edge touches or crosses the patch.
-void ArachnoidMembrane::find_edge(const Piece& piece, const BilinearPatch& patch, const ToolOutline& tool,
-                                  Tent& tent) const {
-  const auto [from, to] = standing_part(piece);
+void ArachnoidMembrane::find_edge(const Placed& piece, const ToolOutline& tool, Tent& tent) const {
+  const BilinearPatch& patch = piece.patch;
   double best = reach();
   bool known = false;  // the foot of the point before
   BilinearPatch::Foot before;
   Vec3 at_before = Vec3::Zero();
-  const auto take = [&, from = from, to = to](const Vec3& at, const BilinearPatch::Foot& foot) {
-    if (foot.s < from || foot.s > to || foot.t < 0 || foot.t > 1 || std::abs(foot.height) > best) return;
+  const auto take = [&](const Vec3& at, const BilinearPatch::Foot& foot) {
+    if (!piece.spans(foot.s, foot.t) || std::abs(foot.height) > best) return;
     best = std::abs(foot.height);
     tent.edge = true;
     tent.edge_foot = foot;
     tent.edge_at = at;
   };
-  const BilinearPatch::Slab slab(patch);
   for (const ToolOutline::Ball& b : tool.edge()) {
     // From here, neither this point nor the edge on either side of it reaches the patch.
-    if (slab.least_distance(b.at) > std::max(best, outline_step)) {
+    if (piece.bounds.least_distance(b.at) > std::max(best, outline_step)) {
       known = false;
       continue;
     }
@@ -170,22 +170,19 @@ void ArachnoidMembrane::find_edge(const Piece& piece, const BilinearPatch& patch
 void ArachnoidMembrane::detect(const StepContext&) {
   for (ToolOutline& tool : tools_)
     if (tool.tool().active()) tool.place();
+  for (Tent& t : tents_) {
+    t.near = t.edge = false;
+    t.side_now = 0;
+    t.gap = infinite;
+  }
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const Piece& piece = pieces_[i];
-    BilinearPatch at;
-    if (piece.holds) at = patch(piece);
-    const Vec3 middle = piece.holds ? at.middle() : Vec3::Zero();
-    const double radius = piece.holds ? at.radius() : 0;
+    if (!pieces_[i].holds) continue;
+    const Placed piece = place(pieces_[i]);
     for (std::size_t k = 0; k < tools_.size(); ++k) {
       const ToolOutline& tool = tools_[k];
-      Tent& t = tent(i, k);
-      t.near = t.edge = false;
-      t.side_now = 0;
-      t.gap = infinite;
-      if (!piece.holds || !tool.tool().active()) continue;
-      if ((tool.middle() - middle).norm() > tool.radius() + radius + aware) continue;
-      touch(piece, at, tool, t);
-      if (tool.tool().cutting()) find_edge(piece, at, tool, t);
+      if (!tool.tool().active() || piece.bounds.gap(tool.middle(), tool.radius()) > aware) continue;
+      touch(piece, tool, tent(i, k));
+      if (tool.tool().cutting()) find_edge(piece, tool, tent(i, k));
     }
   }
 }
@@ -323,7 +320,7 @@ StatedLaw ArachnoidMembrane::law() const {
       ToolOutline tool = tools_[k];
       if (!tool.tool().active()) continue;
       tool.place();
-      const Deepest d = deepest(piece, patch(piece), tool, tent(i, k).side);
+      const Deepest d = deepest(place(piece), tool, tent(i, k).side);
       if (!d.ball || d.side == 0 || d.gap >= 0) continue;
       // Elastic up to the strength, then at a constant force.
       const double stretch = std::min(-d.gap, yield(piece) / rigidity(piece));

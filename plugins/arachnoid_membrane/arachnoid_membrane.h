@@ -141,12 +141,20 @@ class ArachnoidMembrane final : public Constraint, public StatesLaw {
     BilinearPatch::Foot foot;
   };
 
+  /// A piece where its corners are now.
+  struct Placed {
+    BilinearPatch patch;
+    BilinearPatch::Bounds bounds;
+    double from, to;  ///< the part across it that still spans
+    bool spans(double s, double t) const { return s >= from && s <= to && t >= 0 && t <= 1; }
+  };
+
   BilinearPatch patch(const Piece& piece) const;
-  std::array<double, 2> standing_part(const Piece& piece) const;
-  Deepest deepest_from(int side, const Piece& piece, const BilinearPatch& patch, const ToolOutline& tool) const;
-  Deepest deepest(const Piece& piece, const BilinearPatch& patch, const ToolOutline& tool, int side) const;
-  void find_edge(const Piece& piece, const BilinearPatch& patch, const ToolOutline& tool, Tent& tent) const;
-  void touch(const Piece& piece, const BilinearPatch& patch, const ToolOutline& tool, Tent& tent) const;
+  Placed place(const Piece& piece) const;
+  static Deepest deepest_from(int side, const Placed& piece, const ToolOutline& tool);
+  static Deepest deepest(const Placed& piece, const ToolOutline& tool, int side);
+  void find_edge(const Placed& piece, const ToolOutline& tool, Tent& tent) const;
+  static void touch(const Placed& piece, const ToolOutline& tool, Tent& tent);
   void remember_side(std::size_t piece, std::size_t tool);
   double travel(const Piece& piece, const ToolOutline& tool, const Tent& tent) const;
   void part(const StepContext& context, Piece& piece, const EventKind& what, const ToolOutline& tool, double force);

@@ -332,26 +332,26 @@ TEST(ArachnoidMembrane, FootsOfATwistedPatchAreItsNearestPoints) {
       }
 }
 
-TEST(ArachnoidMembrane, TheSlabOfAPatchBoundsHeightAndDistanceOfAFoot) {
+TEST(ArachnoidMembrane, BoundsOfAPatchHoldForHeightAndDistanceOfAFoot) {
   const BilinearPatch flat{{Vec3(0, 0, 0), Vec3(0, 0.003, 0), Vec3(0.004, 0, 0), Vec3(0.004, 0.003, 0)}};
   const BilinearPatch twisted{
       {Vec3(0, 0, 0), Vec3(0, 0.003, 0.0004), Vec3(0.004, 0, 0.0007), Vec3(0.0035, 0.0032, -0.0004)}};
   const BilinearPatch folded{{Vec3(0, 0, 0), Vec3(0, 0.003, 0.004), Vec3(0.003, 0, 0.004), Vec3(0.003, 0.003, -0.004)}};
   double tightest = 1;
   for (const BilinearPatch& patch : {flat, twisted, folded}) {
-    const BilinearPatch::Slab slab(patch);
+    const BilinearPatch::Bounds bounds(patch);
     for (const double s : {0.0, 0.3, 0.7, 1.0})
       for (const double t : {0.0, 0.2, 0.8, 1.0})
         for (const double z : {-0.003, -0.0006, 0.0, 0.0003, 0.002}) {
           const Vec3 p = patch.at(s, t) + z * patch.normal(s, t);
-          EXPECT_LE(slab.least_height(p, 1), z + 1e-15);
-          EXPECT_LE(slab.least_height(p, -1), -z + 1e-15);
-          EXPECT_LE(slab.least_distance(p), std::abs(z) + 1e-15);
-          if (std::isfinite(slab.least_height(p, 1))) tightest = std::min(tightest, z - slab.least_height(p, 1));
+          EXPECT_LE(bounds.least_height(p, 1), z + 1e-15);
+          EXPECT_LE(bounds.least_height(p, -1), -z + 1e-15);
+          EXPECT_LE(bounds.least_distance(p), std::abs(z) + 1e-15);
+          if (std::isfinite(bounds.least_height(p, 1))) tightest = std::min(tightest, z - bounds.least_height(p, 1));
         }
   }
   EXPECT_NEAR(tightest, 0, 1e-15);  // of the flat one
-  EXPECT_FALSE(std::isfinite(BilinearPatch::Slab(folded).least_height(Vec3(0.0015, 0.0015, 1), 1)));
+  EXPECT_FALSE(std::isfinite(BilinearPatch::Bounds(folded).least_height(Vec3(0.0015, 0.0015, 1), 1)));
 }
 
 }  // namespace

@@ -36,18 +36,18 @@ struct BilinearPatch {
     return (corner[2] - corner[0] + t * twist()).cross(corner[1] - corner[0] + s * twist()).normalized();
   }
   Vec3 middle() const { return at(0.5, 0.5); }
-  /// Of the ball about the middle that holds the patch.
-  double radius() const {
-    double out = 0;
-    for (const Vec3& c : corner) out = std::max(out, (c - middle()).norm());
-    return out;
-  }
 
   /// The point of the patch, continued beyond its edges, whose distance to p is stationary: p = at + height normal.
   /// False where Newton's method finds none near the patch. It never allocates.
   bool foot(const Vec3& p, Foot& out) const {
+    if (!foot_parameters(p, out.s, out.t)) return false;
+    complete(p, out);
+    return true;
+  }
+  /// The same, but only s and t.
+  bool foot_parameters(const Vec3& p, double& s, double& t) const {
     const Vec3 twisted = twist();
-    double s = 0.5, t = 0.5;
+    s = t = 0.5;
     for (int i = 0; i < 20; ++i) {
       const Vec3 ds = corner[2] - corner[0] + t * twisted, dt = corner[1] - corner[0] + s * twisted;
       const Vec3 gap = p - at(s, t);
@@ -60,26 +60,47 @@ struct BilinearPatch {
       s += step_s;
       t += step_t;
       if (!(std::abs(s - 0.5) < 2 && std::abs(t - 0.5) < 2)) return false;
-      if (std::abs(step_s) + std::abs(step_t) > 1e-13) continue;
-      out.s = s;
-      out.t = t;
-      out.at = at(s, t);
-      out.normal = normal(s, t);
-      out.height = (p - out.at).dot(out.normal);
-      return true;
+      if (std::abs(step_s) + std::abs(step_t) < 1e-9) return true;  // the next step would be its square
     }
     return false;
   }
+  /// Place, normal and height of the foot with out.s and out.t.
+  void complete(const Vec3& p, Foot& out) const {
+    out.at = at(out.s, out.t);
+    out.normal = normal(out.s, out.t);
+    out.height = (p - out.at).dot(out.normal);
+  }
 
-  /// A cheap bound: how far the patch is at least from points beside it.
-  class Slab {
+  /// Cheap bounds of where a point has its foot: a box about the patch, and how far normals turn. Before normalisation the
+  /// normal is affine in s and t, so all normals lie within the cone about the middle one that holds those of the corners.
+  class Bounds {
    public:
-    explicit Slab(const BilinearPatch& patch)
+    explicit Bounds(const BilinearPatch& patch)
         : middle_(patch.middle()), normal_(patch.normal(0.5, 0.5)), depth_(patch.twist().norm() / 4) {
-      // A strongly twisted patch has no side.
+      const Vec3 dt = patch.corner[1] + patch.corner[3] - patch.corner[0] - patch.corner[2];
+      axes_.row(0) = normal_;
+      axes_.row(1) = normal_.cross(dt).normalized();
+      axes_.row(2) = dt.normalized();
+      for (const Vec3& c : patch.corner) {
+        radius_ = std::max(radius_, (c - middle_).norm());
+        half_ = half_.cwiseMax((axes_ * (c - middle_)).cwiseAbs());
+      }
       for (const double s : {0.0, 1.0})
-        for (const double t : {0.0, 1.0})
-          if (!(patch.normal(s, t).dot(normal_) > 0)) depth_ = std::numeric_limits<double>::infinity();
+        for (const double t : {0.0, 1.0}) cosine_ = std::min(cosine_, patch.normal(s, t).dot(normal_));
+      has_side_ = cosine_ > 0;
+      sine_ = has_side_ ? std::sqrt(std::max(0.0, 1 - cosine_ * cosine_)) : 1;
+      if (!has_side_) depth_ = std::numeric_limits<double>::infinity();
+    }
+    /// The distance between a ball about p and the ball that holds the patch; negative where they overlap.
+    double gap(const Vec3& p, double radius) const { return (p - middle_).norm() - radius_ - radius; }
+    /// False if no point of a ball about p has a foot within the patch that is nearer than `most`.
+    bool may_have_foot(const Vec3& p, double radius, double most) const {
+      const Vec3 outside = ((axes_ * (p - middle_)).cwiseAbs() - half_).cwiseMax(0);
+      if (outside.squaredNorm() > (most + radius) * (most + radius)) return false;
+      if (!has_side_) return true;
+      // The foot's distance is along its normal, so it is at most that far beside the patch.
+      const double aside = radius + sine_ * std::min(most, (outside[0] + 2 * half_[0] + radius) / cosine_);
+      return outside[1] <= aside && outside[2] <= aside;
     }
     /// A foot of p within the patch has at least this height, in the direction of the normal (sign 1) or against it
     /// (sign -1). Minus infinity: unknown.
@@ -92,7 +113,12 @@ struct BilinearPatch {
 
    private:
     Vec3 middle_, normal_;
-    double depth_;  ///< half of the thickness of the slab that holds the patch, m
+    Mat3 axes_;                     ///< of the box, orthonormal rows, the normal first
+    Vec3 half_ = Vec3::Zero();      ///< half of its extent along them, m
+    double radius_ = 0;             ///< of the ball about the middle that holds the patch, m
+    double depth_;                  ///< half of the thickness of the slab that holds the patch, m
+    double cosine_ = 1, sine_ = 0;  ///< of the largest angle between a normal and the middle one
+    bool has_side_ = true;          ///< false for a strongly twisted patch
   };
 
  private:

@@ -22,7 +22,23 @@ ToolOutline::ToolOutline(Instrument& tool, double length, double spacing) : tool
     const int parts = std::max(1, int(std::ceil((b - a).norm() / spacing)));
     for (int k = 0; k <= parts; ++k) add(edge_, a + double(k) / parts * (b - a), 0, 0);
   }
+  make_groups();
   place();
+}
+
+void ToolOutline::make_groups() {
+  constexpr std::size_t size = 8;
+  for (std::size_t begin = 0; begin < balls_.size(); begin += size) {
+    Group g;
+    g.begin = begin;
+    g.end = std::min(begin + size, balls_.size());
+    for (std::size_t i = g.begin; i < g.end; ++i) g.local += balls_[i].local / double(g.end - g.begin);
+    for (std::size_t i = g.begin; i < g.end; ++i) {
+      g.radius = std::max(g.radius, balls_[i].radius);
+      g.spread = std::max(g.spread, (balls_[i].local - g.local).norm());
+    }
+    groups_.push_back(g);
+  }
 }
 
 void ToolOutline::add(std::vector<Ball>& to, const Vec3& local, double radius, double apart) const {
@@ -36,6 +52,7 @@ void ToolOutline::place() {
   middle_.setZero();
   for (std::vector<Ball>* all : {&balls_, &edge_})
     for (Ball& b : *all) b.at = tool_->pose().apply(b.local);
+  for (Group& g : groups_) g.at = tool_->pose().apply(g.local);
   for (const Ball& b : balls_) middle_ += b.at / double(balls_.size());
   radius_ = 0;
   for (const std::vector<Ball>* all : {&balls_, &edge_})

@@ -11,7 +11,7 @@ import pytest
 import slurm_for_test
 import study_for_test as st
 from insula import studies
-from insula.studies import table
+from insula.studies import running, table
 
 parquet = pytest.importorskip("pyarrow.parquet")
 MANY = st.YOUNG + st.SEEDS % 10  # 30 runs
@@ -74,6 +74,35 @@ def test_a_killed_worker_costs_the_run_that_it_was_at(tmp_path):
     after = st.written_at(out)
     assert {k: after[k] for k in before} == before
     check_all(file, out)
+
+
+def test_a_copy_of_a_worker_settles_no_more_and_has_the_bits_of_a_run_alone(tmp_path):
+    scene = st.SCENE.replace("</scene>", '<settle time="1 s"/></scene>')
+    file, out = st.write(tmp_path, st.YOUNG + st.SEEDS % 3, scene=scene), tmp_path / "out"
+    done = st.run(file, "--out", out, "--workers", 1)
+    assert done.returncode == 0, done.stderr
+    plan, found = studies.plan(file), st.rows(out)
+    assert len({r["process"] for r in found.values()}) == 1
+    for run in plan.runs:
+        assert found[run.id]["state_hash"] == running.perform(plan.study, run)["state_hash"]
+
+
+def test_a_killed_copy_costs_the_run_that_it_was_at(tmp_path):
+    file, out = st.write(tmp_path, MANY, LONG), tmp_path / "out"
+    process = start(file, "--out", out, "--workers", 2)
+    killed = []
+
+    def a_copy_of_each():
+        killed[:] = [c for w in st.children(process.pid) for c in st.children(w)]
+        return len(killed) == 2
+
+    until(a_copy_of_each, process)
+    os.kill(killed[0], signal.SIGKILL)
+    os.kill(killed[1], signal.SIGSEGV)
+    said = process.communicate(timeout=300)[1]
+    assert process.returncode == 0, said
+    check_all(file, out)
+    assert not any(st.alive(c) for c in killed)
 
 
 def test_a_killed_study_goes_on(tmp_path):

@@ -174,8 +174,7 @@ std::string retractors_part(const SceneFacts& f) {
   s += fmt::format("<!-- The fissure held open by retractors where the author wants them. {} -->\n<part>\n",
                    training_only);
   s += fmt::format(
-      "  <include file=\"{}/{}\">\n    <variable name=\"lobes\" value=\"{}\"/>\n    <variable "
-      "name=\"tangent_tolerance\" value=\"0.02\"/>\n  </include>\n",
+      "  <include file=\"{}/{}\">\n    <variable name=\"lobes\" value=\"{}\"/>\n  </include>\n",
       f.assets.parts, a.closed_part, f.assets.lobes);
   for (std::size_t k = 0; k < f.retractors->size(); ++k) {
     const RetractorAt& r = (*f.retractors)[k];

@@ -22,23 +22,39 @@ class TimeLimit(Exception):
 
 
 class _Loaded:
-    """The simulation that this process made last. A run with the same scene and values resets it, which gives the bits
-    of a new one."""
+    """The simulation that this process made last."""
 
     key: object = None
     simulation: _core.Simulation | None = None
+    has_run = False
 
 
-def _simulation(study: Study, run: RunSpec) -> _core.Simulation:
+def _load(study: Study, run: RunSpec) -> _core.Simulation:
     key = (str(study.scenes[run.scene]), checking.edits(study, run.at), run.rate)
     if _Loaded.simulation is None or _Loaded.key != key:
-        _Loaded.key, _Loaded.simulation = None, None
+        _Loaded.key, _Loaded.simulation, _Loaded.has_run = None, None, False
         _Loaded.simulation = checking.load(study, run.scene, run.at, run.rate)
         _Loaded.key = key
-    s = _Loaded.simulation
+    return _Loaded.simulation
+
+
+def stands_settled(study: Study, run: RunSpec) -> bool:
+    """Whether this process has the run's simulation at its start. Loads it when needed; False if that fails."""
+    try:
+        _load(study, run)
+    except Exception:  # noqa: BLE001  the run itself tells it
+        return False
+    return not _Loaded.has_run
+
+
+def _at_start(study: Study, run: RunSpec) -> _core.Simulation:
+    """A run with the scene and values of the last one resets its simulation, which gives the bits of a new one."""
+    s = _load(study, run)
     s.follow(None)
     s.draw_complications(run.seed)
-    s.reset()
+    if _Loaded.has_run:
+        s.reset()
+    _Loaded.has_run = True
     return s
 
 
@@ -106,7 +122,7 @@ def perform(study: Study, run: RunSpec) -> Row:
     wall, cpu = time.monotonic(), time.process_time()
     row = describe(study, run)
     try:
-        simulation = _simulation(study, run)
+        simulation = _at_start(study, run)
         row.update(scene_hash="%016x" % simulation.scene_hash, rate=1 / simulation.time_step)
         _steps(simulation, study, run, row, wall + study.time_limit)
         row["status"] = "done"

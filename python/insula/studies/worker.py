@@ -6,24 +6,12 @@ It gets a study and then runs, and answers each with its row. It ends with the p
 
 from __future__ import annotations
 
-import ctypes
 import os
 import signal
 import sys
 from multiprocessing.connection import Connection
 
-from insula.studies.running import perform
-
-PR_SET_PDEATHSIG = 1
-
-
-def end_with_parent(parent: int) -> None:
-    """The kernel ends this process when its parent has died, in whatever step it is."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None, use_errno=True).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:
-        sys.exit(1)  # it had died before
-
+from insula.studies.copies import end_with_parent, perform
 
 def main() -> None:
     end_with_parent(os.getppid())
