@@ -71,8 +71,9 @@ struct BilinearPatch {
     out.height = (p - out.at).dot(out.normal);
   }
 
-  /// Cheap bounds of where a point has its foot: a box about the patch, and how far normals turn. Before normalisation the
-  /// normal is affine in s and t, so all normals lie within the cone about the middle one that holds those of the corners.
+  /// Cheap bounds of where a point has its foot: a box about the patch, and how far normals turn. Before normalisation
+  /// the normal is affine in s and t, so all normals lie within the cone about the middle one that holds those of the
+  /// corners.
   class Bounds {
    public:
     explicit Bounds(const BilinearPatch& patch)

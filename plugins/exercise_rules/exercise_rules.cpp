@@ -224,8 +224,8 @@ class FaultTorn final : public ExerciseRule, public WatchesLimits {
   std::vector<WatchedLimit> watched_limits() const override {
     std::vector<WatchedLimit> out;
     for (const StrandSet* set : sets_)
-      if (set->tension_channel() && set->tearing_tension() > 0)
-        out.push_back({set->tension_channel(), 0, dynamic_cast<const Component*>(set), set->tearing_tension()});
+      if (const ChannelBase* load = set->load_channel())
+        out.push_back({load, 0, dynamic_cast<const Component*>(set), 1});
     return out;
   }
 

@@ -22,10 +22,8 @@ class StrandSet {
   virtual StrandState strand(int i) const = 0;  ///< present state
   /// Whether a strand is severed, without its end points, which cost more.
   virtual bool severed(int i) const { return strand(i).integrity < 0; }
-  /// The largest tension of a strand, N; null: not measured.
-  virtual const ChannelBase* tension_channel() const { return nullptr; }
-  /// Tension that tears a whole strand, N; 0: none does.
-  virtual double tearing_tension() const { return 0; }
+  /// The largest share of the tension at which a strand tears, worn as it is; null: none tears.
+  virtual const ChannelBase* load_channel() const { return nullptr; }
 };
 
 /// All sets of a scene in document order.

@@ -356,6 +356,16 @@ void StrandSprings::publish() {
   standing.set(strands_left());
   total.set(count());
   tension.set(largest);
+  load.set(largest_load());
+}
+
+/// Of the strands that would tear: one under a blade is cut.
+double StrandSprings::largest_load() const {
+  double largest = 0;
+  for (const Strand& s : strands_)
+    if (!s.severed && !s.blade && strength() > 0)
+      largest = std::max(largest, s.tension / (strength() * std::max(1 - s.damage, 1e-9)));
+  return largest;
 }
 
 int StrandSprings::strands_left() const {

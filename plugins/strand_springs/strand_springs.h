@@ -90,6 +90,13 @@ class StrandSprings : public Constraint, public StrandSet, public StatesLaw {
       this, {.name = "total", .doc = "strands at the start", .min = "0", .shown = Shown::none, .digits = 0}};
   Channel<Force> tension{
       this, {.name = "tension", .doc = "largest tension of a strand", .min = "0 N", .display = "mN", .digits = 1}};
+  Channel<Scalar> load{
+      this,
+      {.name = "load",
+       .doc = "largest share of the tension at which a strand tears, worn as it is; strands under a blade do not tear",
+       .min = "0",
+       .shown = Shown::none,
+       .digits = 2}};
   Polylines fibres{this,
                    {.name = "fibres",
                     .doc = "the strands",
@@ -127,8 +134,7 @@ class StrandSprings : public Constraint, public StrandSet, public StatesLaw {
   int strand_count() const override { return count(); }
   StrandState strand(int i) const override;
   bool severed(int i) const override { return strands_[std::size_t(i)].severed; }
-  const ChannelBase* tension_channel() const override { return &tension; }
-  double tearing_tension() const override { return strength(); }
+  const ChannelBase* load_channel() const override { return strength() > 0 ? &load : nullptr; }
   /// Where a strand begins and ends.
   const MaterialPoint& beginning(int i) const { return strands_[std::size_t(i)].a; }
   const MaterialPoint& ending(int i) const { return strands_[std::size_t(i)].b; }
@@ -136,6 +142,7 @@ class StrandSprings : public Constraint, public StrandSet, public StatesLaw {
   void when_spun(std::function<void()> call) { when_spun_.push_back(std::move(call)); }
 
  protected:
+  double largest_load() const;
   struct Strand {
     MaterialPoint a, b;
     double rest = 0;    ///< length without tension, m

@@ -195,6 +195,24 @@ TEST(StrandSprings, ResistsWithCutForceAndPartsAfterCutLength) {
   EXPECT_EQ(severed_at, 5);
 }
 
+// A worn strand tears at a lower tension. Under a blade it would be cut.
+TEST(StrandSprings, LoadIsTheShareOfWhatTearsAStrandAsItIs) {
+  CutBed t(
+      "stiffness=\"30 N/m\" slack=\"0.9\" strength=\"0.05 N\" cut_force=\"0.045 N\" cut_length=\"5 mm\" "
+      "reach=\"0.5 mm\"");
+  ASSERT_TRUE(t.strands && t.knife);
+  const auto expect_load = [&](double share) {
+    EXPECT_NEAR(t.s->channel("strands.load"), share, 1e-9) << "integrity " << t.strands->integrity(0);
+  };
+  for (int n = 1; n <= 3; ++n) t.move(0.00045 - n * 1e-4);
+  expect_load(0);
+  for (int n = 0; n < 3; ++n) t.move(0.002);  // beyond reach
+  ASSERT_GT(t.strands->integrity(0), 0.05);
+  ASSERT_LT(t.strands->integrity(0), 0.95);
+  expect_load(t.s->channel("strands.tension") / (0.05 * t.strands->integrity(0)));
+  expect_load(0.03 / 0.05);  // its stiffness has fallen as its strength
+}
+
 // The servo knows of the blade already, but the pull has torn the strand.
 TEST(StrandSprings, ABladeThatIsOnItsPathCutsNothingYet) {
   CutBed t("stiffness=\"30 N/m\" slack=\"0.9\" strength=\"0.02 N\" reach=\"0.2 mm\"");

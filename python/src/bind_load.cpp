@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Loading, and what a scene says of itself.
 #include "core/base/input_error.h"
+#include "core/sim/settings.h"
 #include "engine/sharing/scene_names.h"
 #include "python/src/bind.h"
 
@@ -81,6 +82,13 @@ void bind_load(nb::module_& m, RunClass& run) {
           "Hash of the scene's files and of what was set in them.")
       .def_prop_ro(
           "time_step", [](const Run& r) { return r.simulation().h(); }, "Length of a step, s.")
+      .def_prop_ro(
+          "settle_time",
+          [](const Run& r) {
+            const auto settings = r.simulation().scene().all<SettleSettings>();
+            return settings.empty() ? 0.0 : settings.front()->time();
+          },
+          "Simulated time before the first step, in which the scene comes to rest, s. 0: none.")
       .def("__repr__", [](const Run& r) {
         return "<insula.Simulation \"" + r.simulation().scene().title() + "\" at " +
                std::to_string(r.simulation().time()) + " s>";

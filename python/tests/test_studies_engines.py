@@ -76,9 +76,11 @@ def test_a_killed_worker_costs_the_run_that_it_was_at(tmp_path):
     check_all(file, out)
 
 
-def test_a_copy_of_a_worker_settles_no_more_and_has_the_bits_of_a_run_alone(tmp_path):
-    scene = st.SCENE.replace("</scene>", '<settle time="1 s"/></scene>')
-    file, out = st.write(tmp_path, st.YOUNG + st.SEEDS % 3, scene=scene), tmp_path / "out"
+SETTLING = st.SCENE.replace("</scene>", '<settle time="1 s"/></scene>')
+
+
+def test_a_copy_of_a_worker_has_the_bits_of_a_run_alone(tmp_path):
+    file, out = st.write(tmp_path, st.YOUNG + st.SEEDS % 3, scene=SETTLING), tmp_path / "out"
     done = st.run(file, "--out", out, "--workers", 1)
     assert done.returncode == 0, done.stderr
     plan, found = studies.plan(file), st.rows(out)
@@ -88,7 +90,7 @@ def test_a_copy_of_a_worker_settles_no_more_and_has_the_bits_of_a_run_alone(tmp_
 
 
 def test_a_killed_copy_costs_the_run_that_it_was_at(tmp_path):
-    file, out = st.write(tmp_path, MANY, LONG), tmp_path / "out"
+    file, out = st.write(tmp_path, MANY, LONG, scene=SETTLING), tmp_path / "out"
     process = start(file, "--out", out, "--workers", 2)
     killed = []
 

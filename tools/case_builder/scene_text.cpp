@@ -173,9 +173,8 @@ std::string retractors_part(const SceneFacts& f) {
   std::string s = head, arms;
   s += fmt::format("<!-- The fissure held open by retractors where the author wants them. {} -->\n<part>\n",
                    training_only);
-  s += fmt::format(
-      "  <include file=\"{}/{}\">\n    <variable name=\"lobes\" value=\"{}\"/>\n  </include>\n",
-      f.assets.parts, a.closed_part, f.assets.lobes);
+  s += fmt::format("  <include file=\"{}/{}\">\n    <variable name=\"lobes\" value=\"{}\"/>\n  </include>\n",
+                   f.assets.parts, a.closed_part, f.assets.lobes);
   for (std::size_t k = 0; k < f.retractors->size(); ++k) {
     const RetractorAt& r = (*f.retractors)[k];
     const std::string id = fmt::format("arm_{}", k + 1);

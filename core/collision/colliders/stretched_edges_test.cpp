@@ -121,8 +121,8 @@ TEST(StretchedEdges, ABladeBetweenTheEndsOfAnEdgeTouchesIt) {
     if (std::abs(x.z() - pose.p.z()) > 0.5e-3) continue;  // the blade's edges are round
     ++faced;
     EXPECT_NEAR(c.normal.x(), 1, 1e-9);
-    EXPECT_TRUE(test::held("gaps of a blade between an edge's ends, m",
-                           std::abs(c.gap - (face_at - x.x() - half_wall)), 1, 1e-9));
+    EXPECT_TRUE(test::held("gaps of a blade between an edge's ends, m", std::abs(c.gap - (face_at - x.x() - half_wall)),
+                           1, 1e-9));
   }
   EXPECT_GE(faced, 6);
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs in copies of this process. To settle, a scene with retractors or blood needs as long as for a run. So this
-process settles it once and never steps it, and each run is made by a fork.
+"""Runs in copies of this process. A scene with retractors settles for as long as a short run lasts. So this process
+settles it once and never steps it, and each run is made by a fork.
 """
 
 from __future__ import annotations

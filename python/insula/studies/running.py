@@ -39,12 +39,13 @@ def _load(study: Study, run: RunSpec) -> _core.Simulation:
 
 
 def stands_settled(study: Study, run: RunSpec) -> bool:
-    """Whether this process has the run's simulation at its start. Loads it when needed; False if that fails."""
+    """Whether this process has the run's simulation at its start, after a time of settling. Loads it when needed;
+    False if that fails."""
     try:
-        _load(study, run)
+        simulation = _load(study, run)
     except Exception:  # noqa: BLE001  the run itself tells it
         return False
-    return not _Loaded.has_run
+    return simulation.settle_time > 0 and not _Loaded.has_run
 
 
 def _at_start(study: Study, run: RunSpec) -> _core.Simulation:
