@@ -332,7 +332,7 @@ TEST(ArachnoidMembrane, FootsOfATwistedPatchAreItsNearestPoints) {
       }
 }
 
-TEST(ArachnoidMembrane, BoundsOfAPatchHoldForHeightAndDistanceOfAFoot) {
+TEST(ArachnoidMembrane, BoundsOfAPatchHoldForEachFoot) {
   const BilinearPatch flat{{Vec3(0, 0, 0), Vec3(0, 0.003, 0), Vec3(0.004, 0, 0), Vec3(0.004, 0.003, 0)}};
   const BilinearPatch twisted{
       {Vec3(0, 0, 0), Vec3(0, 0.003, 0.0004), Vec3(0.004, 0, 0.0007), Vec3(0.0035, 0.0032, -0.0004)}};
@@ -347,10 +347,17 @@ TEST(ArachnoidMembrane, BoundsOfAPatchHoldForHeightAndDistanceOfAFoot) {
           EXPECT_LE(bounds.least_height(p, 1), z + 1e-15);
           EXPECT_LE(bounds.least_height(p, -1), -z + 1e-15);
           EXPECT_LE(bounds.least_distance(p), std::abs(z) + 1e-15);
+          for (const Vec3& aside : {Vec3(0, 0, 0), Vec3(0.002, 0, 0), Vec3(0, -0.001, 0.0005)})
+            EXPECT_TRUE(bounds.may_have_foot(p + aside, aside.norm() + 1e-15, std::abs(z) + 1e-15));
           if (std::isfinite(bounds.least_height(p, 1))) tightest = std::min(tightest, z - bounds.least_height(p, 1));
         }
   }
   EXPECT_NEAR(tightest, 0, 1e-15);  // of the flat one
+  // A flat patch leaves nothing in doubt.
+  const BilinearPatch::Bounds exact(flat);
+  for (const auto& [x, inside] : {std::pair{0.00401, false}, {0.00399, true}, {-0.00001, false}})
+    EXPECT_EQ(exact.may_have_foot(Vec3(x, 0.0015, 0.001), 0, 0.004), inside) << x;
+  EXPECT_FALSE(exact.may_have_foot(Vec3(0.002, 0.0015, 0.00401), 0, 0.004)) << "too high";
   EXPECT_FALSE(std::isfinite(BilinearPatch::Bounds(folded).least_height(Vec3(0.0015, 0.0015, 1), 1)));
 }
 
