@@ -84,6 +84,11 @@ def test_the_time_step_can_be_set():
     assert load_block(time_step=0.002).time_step == pytest.approx(0.002, abs=1e-12)
 
 
+def test_how_long_a_scene_settles():
+    assert load_block().settle_time == 0
+    assert load_block(BLOCK.replace("</scene>", '<settle time="0.5 s"/></scene>')).settle_time == 0.5
+
+
 def test_plugins_come_from_folders(build, tmp_path):
     with_tiny = BLOCK.replace("</scene>", '<tiny_constraint id="t" strength="1 N"/></scene>')
     with pytest.raises(insula.SceneError, match="tiny_constraint"):
