@@ -96,7 +96,8 @@ class StrandSprings : public Constraint, public StrandSet, public StatesLaw {
        .doc = "largest share of the tension at which a strand tears, worn as it is; strands under a blade do not tear",
        .min = "0",
        .shown = Shown::none,
-       .digits = 2}};
+       .display = "%",
+       .digits = 0}};
   Polylines fibres{this,
                    {.name = "fibres",
                     .doc = "the strands",

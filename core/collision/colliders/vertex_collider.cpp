@@ -29,6 +29,8 @@ VertexCollider::VertexCollider(const std::vector<ConvexPiece>& pieces, const std
       if (auto& own = triangle_of_[std::size_t(triangles[std::size_t(t)][std::size_t(k)])]; own[0] < 0) own = {t, k};
   const std::size_t most = most_edge_points + 3 * StretchedEdges::per_edge;
   seen_.reserve(n + most);
+  seen_triangles_.reserve(triangles.size());
+  marked_triangles_.assign(triangles.size(), 0);
   edge_points_.reserve(most);
   kept_points_.reserve(most);
   next_kept_points_.reserve(most);
@@ -73,6 +75,9 @@ void VertexCollider::list_points(const Step& step) {
     }
     box.inflate(p.radius + step.settings.offset + step.settings.alarm + step.turn * step.turn * lever);
     step.mesh.tree().overlapping(box, [&](int t) {
+      if (marked_triangles_[std::size_t(t)]) return;
+      marked_triangles_[std::size_t(t)] = 1;
+      seen_triangles_.push_back(t);
       for (int v : step.mesh.triangle(t)) {
         if (marked_[std::size_t(v)]) continue;
         marked_[std::size_t(v)] = 1;
@@ -83,6 +88,8 @@ void VertexCollider::list_points(const Step& step) {
   }
   std::sort(seen_.begin(), seen_.end());
   for (const int v : seen_) marked_[std::size_t(v)] = 0;
+  for (const int t : seen_triangles_) marked_triangles_[std::size_t(t)] = 0;
+  seen_triangles_.clear();
   std::sort(edge_points_.begin(), edge_points_.end());
   edge_points_.erase(std::unique(edge_points_.begin(), edge_points_.end()), edge_points_.end());
   for (const int p : edge_points_) seen_.push_back(int(triangle_of_.size()) + p);

@@ -92,8 +92,9 @@ class VertexCollider {
                               ///< of unit length
   std::vector<int> seen_;     ///< points near the pieces in this step
   std::vector<int> edge_points_;
-  std::vector<char> marked_;
-  std::vector<Candidate> near_pieces_;  ///< of one vertex
+  std::vector<int> seen_triangles_;
+  std::vector<char> marked_, marked_triangles_;  ///< those seen; no mark outlives list_points()
+  std::vector<Candidate> near_pieces_;           ///< of one vertex
 };
 
 }  // namespace insula
