@@ -49,29 +49,32 @@ bool MultifrontalCholesky<Real>::factorise(const BlockMatrix& a, const Front& f)
     for (int c = 0; c < 3; ++c)
       for (int r = 0; r < 3; ++r) to[long(c) * f.lda + r] = Real(sc.transpose ? b[3 * r + c] : b[3 * c + r]);
   }
-  for (int c : f.children) add_child(f, e_.front[std::size_t(c)], true);
+  Real* update = below > 0 ? update_.data() + f.update : nullptr;
+  for (int j = 0; j < below; ++j) {  // its lower triangle
+    const int top = j & -lanes;
+    std::memset(update + long(j) * f.ldu + top, 0, sizeof(Real) * std::size_t(f.ldu - top));
+  }
+  for (int c : f.children) add_child(f, e_.front[std::size_t(c)]);
   if (k.cholesky_panel(panel, f.lda, rows, own, inverse_.data() + 3 * f.first) >= 0 || !pivots_are_good(a, f))
     return false;
-  if (below == 0) return true;
-  k.syrk_negative(update_.data() + f.update, f.ldu, panel + own, f.lda, below, own);
-  for (int c : f.children) add_child(f, e_.front[std::size_t(c)], false);
+  if (below > 0) k.syrk_sub(update, f.ldu, panel + own, f.lda, below, own);
   return true;
 }
 
-// Extend-add of a child's update matrix: those columns that the front eliminates, or those of its own update matrix.
+// Extend-add of a child's update matrix.
 template <class Real>
-void MultifrontalCholesky<Real>::add_child(const Front& f, const Front& child, bool to_panel) {
+void MultifrontalCholesky<Real>::add_child(const Front& f, const Front& child) {
   const int own = 3 * f.own, n = child.rows - child.own;
   const int* map = e_.map.data() + child.map_begin;
-  const int first_below = int(std::lower_bound(map, map + n, f.own) - map);
   const Real* u = update_.data() + child.update;
   Real* panel = panel_.data() + f.panel;
   Real* update = update_.data() + f.update;
-  for (int j = to_panel ? 0 : first_below; j < (to_panel ? first_below : n); ++j) {
+  for (int j = 0; j < n; ++j) {
     const int pj = map[j];
+    const bool in_panel = pj < f.own;
     for (int jj = 0; jj < 3; ++jj) {
       const Real* from = u + long(3 * j + jj) * child.ldu;
-      Real* to = to_panel ? panel + long(3 * pj + jj) * f.lda : update + long(3 * (pj - f.own) + jj) * f.ldu - own;
+      Real* to = in_panel ? panel + long(3 * pj + jj) * f.lda : update + long(3 * (pj - f.own) + jj) * f.ldu - own;
       for (int i = j; i < n; ++i) {
         Real* t = to + 3 * map[i];
         const Real* g = from + 3 * i;

@@ -46,7 +46,7 @@ class MultifrontalCholesky final : public BodySolver {
 
   bool factorise(const BlockMatrix& a, const Front& f);
   void forward(const Front& f, Real* x);
-  void add_child(const Front& f, const Front& child, bool to_panel);
+  void add_child(const Front& f, const Front& child);
   bool pivots_are_good(const BlockMatrix& a, const Front& f) const;
   void forward(Real* x);
   void backward(Real* x);

@@ -17,8 +17,8 @@ struct KernelsOf {
   void (*gemm_add)(Real* c, int ldc, const Real* a, int lda, const Real* b, int ldb, int m, int n, int k);
   /// As gemm_add with A = B, but only for blocks that touch j <= i.
   void (*syrk_add)(Real* c, int ldc, const Real* a, int lda, int m, int k);
-  /// C = -A A^T, but only for blocks that touch j <= i. C need not be initialised.
-  void (*syrk_negative)(Real* c, int ldc, const Real* a, int lda, int m, int k);
+  /// As gemm_sub with A = B, but only for blocks that touch j <= i.
+  void (*syrk_sub)(Real* c, int ldc, const Real* a, int lda, int m, int k);
   /// Rows: y_r[0..m) -= sum_k L[r + k ldl] x[k ldx + 0..m), r < rows; y_r = y + index[r] ldy. m a multiple of width.
   void (*rows_sub)(Real* y, long ldy, const int* index, int rows, const Real* l, int ldl, const Real* x, long ldx,
                    int k, int m);

@@ -36,16 +36,8 @@ inline void store(T* p, V<T> v) {
   *reinterpret_cast<V<T>*>(p) = v;
 }
 
-enum class Into { add, subtract, negative };  // what is done with a product: C += p, C -= p, C = -p
-template <Into into, class T>
-inline __attribute__((always_inline)) void put(T* c, V<T> product) {
-  if constexpr (into == Into::add) store(c, load(c) + product);
-  else if constexpr (into == Into::subtract) store(c, load(c) - product);
-  else store(c, -product);
-}
-
 // One register tile: nv vectors of rows times NR columns; `cols` of them are stored. B may be read NR wide.
-template <int nv, Into into, class T>
+template <int nv, bool add, class T>
 inline __attribute__((always_inline)) void tile(T* c, int ldc, const T* a, int lda, const T* b, int ldb, int cols,
                                                 int k) {
   V<T> acc[nv][NR];
@@ -66,42 +58,48 @@ inline __attribute__((always_inline)) void tile(T* c, int ldc, const T* a, int l
 #pragma GCC unroll 8
     for (int j = 0; j < NR; ++j)
 #pragma GCC unroll 8
-      for (int v = 0; v < nv; ++v) put<into>(c + long(j) * ldc + v * W<T>, acc[v][j]);
+      for (int v = 0; v < nv; ++v) {
+        T* p = c + long(j) * ldc + v * W<T>;
+        store(p, add ? load(p) + acc[v][j] : load(p) - acc[v][j]);
+      }
   } else {
     for (int j = 0; j < cols; ++j)
-      for (int v = 0; v < nv; ++v) put<into>(c + long(j) * ldc + v * W<T>, acc[v][j]);
+      for (int v = 0; v < nv; ++v) {
+        T* p = c + long(j) * ldc + v * W<T>;
+        store(p, add ? load(p) + acc[v][j] : load(p) - acc[v][j]);
+      }
   }
 }
 
-template <Into into, class T>
+template <bool add, class T>
 void gemm(T* c, int ldc, const T* a, int lda, const T* b, int ldb, int m, int n, int k, bool lower) {
   for (int j = 0; j < n; j += NR) {
     const int cols = n - j < NR ? n - j : NR;
     int i = lower ? j / W<T> * W<T> : 0;
     T* cj = c + long(j) * ldc;
-    for (; i + (NV - 1) * W<T> < m; i += NV * W<T>) tile<NV, into>(cj + i, ldc, a + i, lda, b + j, ldb, cols, k);
+    for (; i + (NV - 1) * W<T> < m; i += NV * W<T>) tile<NV, add>(cj + i, ldc, a + i, lda, b + j, ldb, cols, k);
     const int left = m > i ? (m - i + W<T> - 1) / W<T> : 0;
     if constexpr (NV > 2)
-      if (left == 2) tile<2, into>(cj + i, ldc, a + i, lda, b + j, ldb, cols, k);
-    if (left == 1) tile<1, into>(cj + i, ldc, a + i, lda, b + j, ldb, cols, k);
+      if (left == 2) tile<2, add>(cj + i, ldc, a + i, lda, b + j, ldb, cols, k);
+    if (left == 1) tile<1, add>(cj + i, ldc, a + i, lda, b + j, ldb, cols, k);
   }
 }
 
 template <class T>
 void gemm_sub(T* c, int ldc, const T* a, int lda, const T* b, int ldb, int m, int n, int k) {
-  gemm<Into::subtract>(c, ldc, a, lda, b, ldb, m, n, k, false);
+  gemm<false>(c, ldc, a, lda, b, ldb, m, n, k, false);
 }
 template <class T>
 void gemm_add(T* c, int ldc, const T* a, int lda, const T* b, int ldb, int m, int n, int k) {
-  gemm<Into::add>(c, ldc, a, lda, b, ldb, m, n, k, false);
+  gemm<true>(c, ldc, a, lda, b, ldb, m, n, k, false);
 }
 template <class T>
 void syrk_add(T* c, int ldc, const T* a, int lda, int m, int k) {
-  gemm<Into::add>(c, ldc, a, lda, a, lda, m, m, k, true);
+  gemm<true>(c, ldc, a, lda, a, lda, m, m, k, true);
 }
 template <class T>
-void syrk_negative(T* c, int ldc, const T* a, int lda, int m, int k) {
-  gemm<Into::negative>(c, ldc, a, lda, a, lda, m, m, k, true);
+void syrk_sub(T* c, int ldc, const T* a, int lda, int m, int k) {
+  gemm<false>(c, ldc, a, lda, a, lda, m, m, k, true);
 }
 
 template <int nv, class T>
@@ -170,7 +168,7 @@ int cholesky_panel(T* a, int lda, int rows, int cols, T* inverse) {
   for (int j = 0; j < cols; j += NR) {
     const int w = cols - j < NR ? cols - j : NR;
     T* d = a + j + long(j) * lda;  // diagonal block
-    if (j > 0) gemm<Into::subtract>(d, lda, a + j, lda, a + j, lda, rows - j, w, j, false);
+    if (j > 0) gemm<false>(d, lda, a + j, lda, a + j, lda, rows - j, w, j, false);
     T* inv = inverse + j;
     for (int c = 0; c < w; ++c) {  // diagonal block, small, so column by column
       T p = d[c + long(c) * lda];
@@ -365,7 +363,7 @@ constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME),
                                    gemm_sub<T>,
                                    gemm_add<T>,
                                    syrk_add<T>,
-                                   syrk_negative<T>,
+                                   syrk_sub<T>,
                                    rows_sub<T>,
                                    cholesky_panel<T>,
                                    lower_solve_rows<T>,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Products, and substitution with one front, of every instruction set the processor has, against plain loops.
+// Products with a few columns and substitution with one front, of every instruction set the processor has, against
+// plain loops.
 #include "core/linalg/kernels.h"
 
 #include <gtest/gtest.h>
@@ -48,29 +49,6 @@ void check_columns(const KernelsOf<Real>& k) {
         for (int c = 0; c < n; ++c) sum -= double(a[std::size_t(r + c * lda)]) * double(x[std::size_t(c)]);
         ASSERT_NEAR(double(less[std::size_t(r)]), sum, near * std::sqrt(n + 1.0)) << m << " x " << n << ", row " << r;
       }
-    }
-}
-
-// C = -A A^T where C held no numbers before. Blocks above the diagonal may be written or not.
-template <class Real>
-void check_negative_product(const KernelsOf<Real>& k) {
-  SCOPED_TRACE(std::string(k.name) + (sizeof(Real) == 4 ? ", single" : ", double"));
-  std::mt19937 dice(13);
-  std::uniform_real_distribution<Real> any(-1, 1);
-  const double near = 64 * double(std::numeric_limits<Real>::epsilon());
-  for (const int m : {1, 3, 6, 9, 21, 45, 60})
-    for (const int n : {3, 6, 15, 24}) {
-      const int lda = m + 5, ldc = (m + k.width - 1) / k.width * k.width;
-      std::vector<Real> a(std::size_t(lda) * std::size_t(n) + 64);
-      for (Real& x : a) x = any(dice);
-      std::vector<Real> c(std::size_t(ldc) * std::size_t(m) + 64, std::numeric_limits<Real>::quiet_NaN());
-      k.syrk_negative(c.data(), ldc, a.data(), lda, m, n);
-      for (int j = 0; j < m; ++j)
-        for (int i = j; i < m; ++i) {
-          double sum = 0;
-          for (int p = 0; p < n; ++p) sum -= double(a[std::size_t(i + p * lda)]) * double(a[std::size_t(j + p * lda)]);
-          ASSERT_NEAR(double(c[std::size_t(i + j * ldc)]), sum, near * std::sqrt(n + 1.0)) << m << " x " << n;
-        }
     }
 }
 
@@ -128,13 +106,6 @@ TEST(Kernels, ColumnsTimesAVector) {
   of_every_set([](const KernelSet& t) {
     check_columns(t.f64);
     check_columns(t.f32);
-  });
-}
-
-TEST(Kernels, NegativeOfAProductWithItsTranspose) {
-  of_every_set([](const KernelSet& t) {
-    check_negative_product(t.f64);
-    check_negative_product(t.f32);
   });
 }
 

@@ -108,8 +108,8 @@ ROUGH_LEFT = [
     (0.8, 1, 5.0, -1.0, 0, "let go"),
     (0.8, 3, 7.5, -1.4, 0, "change place, deeper"),
     (0.4, 3, 7.5, -1.4, 1, "take hold"),
-    (1.0, 3, 7.5, -8.0, 1, "tear the lips apart"),
-    (1.5, 3, 7.5, -8.0, 1, "and keep on pulling"),
+    (2.4, 3, 7.5, -12.0, 1, "tear the lips apart"),
+    (1.5, 3, 7.5, -12.0, 1, "and keep on pulling"),
     (1.2, 1, 3.0, 0.0, 0, "let go"),
     (2.0, -14, -24, -10, 0, "withdraw"),
 ]
